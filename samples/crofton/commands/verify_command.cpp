@@ -10,13 +10,6 @@
 #include "json/json.hpp"
 #include "progress_bar.hpp"
 #include "report.hpp"
-#include "verify/collide.hpp"
-#include "verify/convex.hpp"
-#include "verify/convex_scene.hpp"
-#include "verify/cull.hpp"
-#include "verify/occlude.hpp"
-#include "verify/occlude_scene.hpp"
-#include "verify/pvs.hpp"
 #include "verify/rows.hpp"
 #include "verify/topics.hpp"
 

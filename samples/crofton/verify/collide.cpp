@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "collide.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <crofton/collide/narrow_phase.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <random>
 
-#include "convex.hpp"
-#include "convex_refusals.hpp"
+#include "topics.hpp"
 
 namespace crofton::cli {
 namespace {
@@ -158,7 +155,6 @@ std::vector<VerifyRow> verify_collide(const VerifyOptions& options) {
                               Class{"nearly parallel (1e-1 to 1e-12 rad), centres in float", true, true}})
         for (const bool batch : {false, true}) rows.push_back(wrong_answers(kind, options, batch));
     for (VerifyRow& row : verify_convex(options)) rows.push_back(std::move(row));
-    for (VerifyRow& row : verify_bad_shapes(options)) rows.push_back(std::move(row));
     return rows;
 }
 

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Convex shapes: yes or no, depth and casts, against numbers that are never rounded.
-#include "convex.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "convex_pairs.hpp"
 #include "exact_shapes.hpp"
+#include "topics.hpp"
 
 namespace crofton::cli {
 namespace {

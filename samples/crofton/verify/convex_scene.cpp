@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "convex_scene.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,6 +10,7 @@
 #include "convex_pairs.hpp"
 #include "exact_shapes.hpp"
 #include "shape_data.hpp"
+#include "topics.hpp"
 
 namespace crofton::cli {
 namespace {

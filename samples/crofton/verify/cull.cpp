@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "cull.hpp"
-
 #include <algorithm>
 #include <array>
 #include <crofton/boxtree/box_tree.hpp>
@@ -10,6 +8,7 @@
 
 #include "certificate.hpp"
 #include "straddlers.hpp"
+#include "topics.hpp"
 
 namespace crofton::cli {
 namespace {

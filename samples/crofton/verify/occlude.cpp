@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "occlude.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <crofton/occlude/occlusion.hpp>
@@ -9,8 +7,8 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-#include "occlude_refusals.hpp"
 #include "occlude_setups.hpp"
+#include "topics.hpp"
 
 namespace crofton::cli {
 namespace {
@@ -205,10 +203,6 @@ std::vector<VerifyRow> verify_occlude(const VerifyOptions& options) {
                           kOffsets[std::min(turn, std::size(kOffsets)) - 1]);
         add_rows(rows, std::string(hard.name) + offsets, counts);
     }
-    Random random(options.seed);
-    for (const Refusals& bad : try_bad_occluders(random, std::max<std::uint64_t>(4, options.trials / 1000)))
-        add_none(rows, std::string("occluders that are ") + bad.kind + " are refused by name and hide nothing",
-                 bad.tried, bad.wrong);
     return rows;
 }
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "occlude_scene.hpp"
-
 #include <cmath>
 #include <crofton/crofton.hpp>
 #include <crofton/sampling/sampling.hpp>
@@ -10,6 +8,8 @@
 #include <map>
 
 #include "pipeline/scene_occluders.hpp"
+
+#include "topics.hpp"
 
 namespace crofton::cli {
 namespace {

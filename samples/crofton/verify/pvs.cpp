@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "pvs.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <crofton/lines/lines.hpp>
@@ -12,6 +10,8 @@
 
 #include "pipeline/pvs_scene.hpp"
 #include "pipeline/pvs_views.hpp"
+
+#include "topics.hpp"
 
 namespace crofton::cli {
 namespace {

@@ -68,17 +68,15 @@ TEST_SUITE("cli/verify") {
     TEST_CASE("nothing seen is culled, in set-ups that break others and in a whole scene") {
         CliRun run = run_cli("verify occlude --trials 3000 --json -");
         CHECK(run.status == 0);
-        std::size_t rows = 0, refusals = 0;
+        std::size_t rows = 0;
         for (const auto& row : run.json()) {
             CHECK(row["holds"] == true);
             const std::string claim = row["claim"];
-            refusals += claim.find("refused by name") != std::string::npos;
             if (claim.find("witness") == std::string::npos) continue;
             ++rows;
             CHECK(row["cases"].get<std::uint64_t>() > 0);
         }
         CHECK(rows == 13);
-        CHECK(refusals == 4);  // open, inside out, flat, not finite
         run = run_cli("verify occlude --scene town --trials 5000 --json -");
         CHECK(run.status == 0);
         CHECK(run.json().size() == 4);
@@ -103,21 +101,16 @@ TEST_SUITE("cli/verify") {
         }
     }
 
-    TEST_CASE("shapes of bad input are refused by name, and hulls, meshes and maps as shapes are exact") {
+    TEST_CASE("shapes that nearly touch, hulls, meshes and maps as shapes are exact") {
         CliRun run = run_cli("verify collide --trials 1000 --json -");
         CHECK(run.status == 0);
-        std::size_t bad = 0;
-        for (const auto& row : run.json()) {
-            CHECK(row["holds"] == true);
-            bad += row["source"] == "bad input" && row["cases"].get<std::uint64_t>() > 0;
-        }
-        CHECK(bad == 10);
+        for (const auto& row : run.json()) CHECK(row["holds"] == true);
         const auto all = run.json();
         run = run_cli("verify convex --trials 1000 --json -");
         CHECK(run.status == 0);
         const auto part = run.json();
         REQUIRE(part.size() == 76);
-        for (std::size_t i = 0; i < part.size(); ++i) CHECK(part[i] == all[all.size() - bad - part.size() + i]);
+        for (std::size_t i = 0; i < part.size(); ++i) CHECK(part[i] == all[all.size() - part.size() + i]);
         const std::string mesh = scratch().file("tetrahedra.obj"), map = scratch().file("squares.poly"),
                           tests = "--trials 8000 --json -";
         std::ofstream(mesh)

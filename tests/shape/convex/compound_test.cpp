@@ -55,6 +55,9 @@ TEST_SUITE("convex/compound") {
         REQUIRE_FALSE(Compound::build(children).has_value());
         CHECK(error_of(Compound::build(children)).code == ErrorCode::non_finite);
         CHECK(error_of(Compound::build(children)).item == 1);
+        children[1].pose = at({0, 1, 0});
+        children[1].pose.rotation[2] = -children[1].pose.rotation[2];  // mirrors
+        CHECK(error_of(Compound::build(children)).code == ErrorCode::invalid_argument);
     }
 
     TEST_CASE("a compound with half-spaces is ground without end: it answers as its children, in either order") {

@@ -2,12 +2,15 @@
 #include <doctest/doctest.h>
 #include <gmpxx.h>
 #include <box_mesh.hpp>
+#include <cmath>
 #include <crofton/occlude/occlusion.hpp>
 #include <error_of.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <limits>
 #include <random>
+#include <utility>
+#include <vector>
 
 #include "../../../engine/view/occlude/src/exact_turn.hpp"
 
@@ -119,6 +122,59 @@ TEST_SUITE("occlude/occluder") {
             REQUIRE(occlude::sign_of_determinant(m) == sgn(exact));
         }
         CHECK(wrong_in_double > 100);
+    }
+
+    TEST_CASE("whatever number of a box, mesh or transform is bad, it is refused, and the same is hidden as before") {
+        occlude::OccluderSet set;
+        Obb box;
+        box.center = {0.0, 0.0, -10.0};
+        box.half_extents = {1.0f, 1.0f, 1.0f};
+        const auto placed = *set.place(box);
+        TriangleMesh mesh = testing::box_mesh(glm::vec3(-5.0f, -5.0f, -25.0f), glm::vec3(5.0f, 5.0f, -15.0f));
+        const auto shape = *set.add_mesh(mesh);
+        auto buffer = *occlude::OcclusionBuffer::create({64, 36});
+        const auto depth = [&] {
+            std::vector<float> nearness(std::size_t{64} * 36);
+            buffer.draw(set, *occlude::occlusion_view_of(Camera{}));
+            buffer.read(nearness);
+            return nearness;
+        };
+        const auto before = depth();
+        const auto refuse = [&](auto& number, auto bad, ErrorCode code, auto... attempts) {
+            const auto good = std::exchange(number, bad);
+            for (const Error& error : {error_of(attempts())...}) CHECK(error.code == code);
+            number = good;
+        };
+        const auto place = [&] { return set.place(box); };
+        const auto move = [&] { return set.move(placed, box); };
+        Transform transform;
+        const auto transformed = [&] { return set.place(shape, transform); };
+        const auto add_mesh = [&] { return set.add_mesh(mesh); };
+        const auto add_surface = [&] { return set.add_surface(mesh, occlude::Sides::both); };
+        const auto add_convex = [&] { return set.add_convex(mesh.positions); };
+        for (const double bad : {std::numeric_limits<double>::quiet_NaN(), HUGE_VAL, -HUGE_VAL})
+            for (int k = 0; k < 3; ++k) {
+                const auto code = ErrorCode::non_finite;
+                refuse(box.center[k], bad, code, place, move);
+                refuse(box.half_extents[k], static_cast<float>(bad), code, place, move);
+                for (int j = 0; j < 3; ++j) {
+                    refuse(box.axes[k][j], static_cast<float>(bad), code, place, move);
+                    refuse(transform.linear[k][j], bad, code, transformed);
+                }
+                refuse(transform.translation[k], bad, code, transformed);
+                refuse(mesh.positions[7][k], static_cast<float>(bad), code, add_mesh, add_surface, add_convex);
+            }
+        for (int k = 0; k < 3; ++k) {
+            refuse(box.half_extents[k], 0.0f, ErrorCode::degenerate, place, move);
+            refuse(transform.linear[k], glm::dvec3(0.0), ErrorCode::degenerate, transformed);
+        }
+        std::swap(mesh.indices[0], mesh.indices[1]);  // one face is turned over
+        std::swap(mesh.indices[3], mesh.indices[4]);
+        CHECK(error_of(add_mesh()).code == ErrorCode::invalid_argument);
+        for (glm::vec3& p : mesh.positions) p.y = p.x;
+        for (glm::vec3& p : mesh.positions) p.z = p.x;
+        CHECK(error_of(add_surface()).code == ErrorCode::degenerate);
+        CHECK(depth() == before);
     }
 
     TEST_CASE("a transform that flattens a shape is refused") {
