@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the file says of meshes besides their arrays: how they look, and their clusters. Files may be without.
+// Properties of meshes besides their arrays: looks and clusters. Both are optional in a file.
 #pragma once
 #include <crofton/bake/baked_scene.hpp>
 #include <crofton/bake/container.hpp>

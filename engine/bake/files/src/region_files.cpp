@@ -13,7 +13,7 @@ namespace {
 
 using scene::InstanceId;
 
-// Of the section "regions"; names are in the section "names".
+// A record of the section "regions"; names are in the section "names".
 struct RegionRecord {
     glm::dvec3 origin{0.0}, low{0.0}, high{0.0};
     std::uint64_t objects = 0, bytes = 0;
@@ -62,7 +62,7 @@ Vector<Aabb> bounds_of_nodes(const scene::Scene& scene) {
     return bounds;
 }
 
-// What a region's file holds beside its scene, by the whole scene's meshes and nodes.
+// The sections of a region's file besides its scene, indexed by the whole scene's meshes and nodes.
 struct PartMaps {
     Vector<scene::MeshId> mesh_of, old_mesh;  // by old mesh; by new mesh
     Vector<scene::NodeId> node_of;            // by old node

@@ -26,7 +26,7 @@ tl::unexpected<Error> write_error(const std::string& path, const char* what, int
     return fail(ErrorCode::io, kNoItem, {path, ": ", what, ": ", std::strerror(reason)});
 }
 
-// The file that a link leads to, which need not be there yet; the path itself where it is none, or leads in circles.
+// Resolves links, also to a file that does not exist yet. Returns the path itself if it is no link, or a circular one.
 std::string behind_links(const std::string& path) {
     constexpr int kMostLinks = 40;  // as Linux follows
     std::filesystem::path target = path;
@@ -56,7 +56,7 @@ class OpenFile {
         close_now();
         number_ = ::open(path.c_str(), flags | O_CLOEXEC, 0666);
     }
-    // False where the system tells only now that something was not written.
+    // Returns false if the system reports a failed write only now.
     bool close_now() { return number_ < 0 || ::close(std::exchange(number_, -1)) == 0; }
 
   private:
@@ -132,7 +132,7 @@ Result<void> write_and_rename(const std::string& target, const std::string& path
     const bool replaces = ::stat(target.c_str(), &old) == 0;
     int reason = ftruncate(file.number(), 0) != 0 ? errno : write_all(file.number(), bytes);
     if (reason == 0 && replaces) static_cast<void>(fchmod(file.number(), old.st_mode & 07777));
-    // Some file systems cannot flush one file (EINVAL); an error of the disk is told here and nowhere else.
+    // Some file systems cannot flush one file (EINVAL); a disk error is reported here and nowhere else.
     if (reason == 0 && fsync(file.number()) != 0 && errno != EINVAL && errno != EROFS) reason = errno;
     if (reason == 0 && std::rename(partial.c_str(), target.c_str()) != 0) reason = errno;
     if (reason == 0) {

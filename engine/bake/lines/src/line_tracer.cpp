@@ -22,7 +22,7 @@ detail::FlatRay flat(const Line& line, const glm::dvec3& origin, std::uint32_t s
     for (int k = 0; k < 3; ++k) {
         ray.point[k] = static_cast<float>(point[k]);
         const float d = static_cast<float>(line.direction[k]);
-        // A component of zero would make 0 · ∞; this one bends the line by less than float can tell.
+        // A component of zero would make 0 · ∞; this one bends the line by less than a float's resolution.
         ray.direction[k] = std::abs(d) < 1e-20f ? std::copysign(1e-20f, d) : d;
     }
     ray.skip = skip;

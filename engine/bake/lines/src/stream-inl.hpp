@@ -21,7 +21,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace crofton::lines::detail::HWY_NAMESPACE {
 
-// Those of eight numbers whose bits are set, to `to`, which has room for all eight. Returns how many there are.
+// Writes those of eight numbers whose bits are set to `to`, which has room for all eight. Returns their number.
 HWY_INLINE std::size_t put_eight(const std::uint16_t* from, std::size_t bits, std::uint16_t* to) {
 #if HWY_TARGET == HWY_SCALAR
     std::size_t count = 0;
@@ -47,7 +47,8 @@ HWY_INLINE void flatten(const double* lines, std::size_t count, const double* or
     for (std::size_t i = 0; i < count; ++i)
         for (std::size_t k = 0; k < 6; k += kStep) {
             const auto x = hn::DemoteTo(df, hn::Sub(hn::LoadU(d, lines + 6 * i + k), hn::Load(d, middle + k)));
-            // A direction's component of zero would make 0 · ∞; this one bends the line by less than float can tell.
+            // A direction's component of zero would make 0 · ∞; this one bends the line by less than a float's
+            // resolution.
             const auto smallest = hn::Load(df, least + k);
             const auto y = hn::IfThenElse(hn::Lt(hn::Abs(x), smallest), hn::CopySign(smallest, x), x);
             hn::StoreU(y, df, flat[i].values + k);
@@ -114,7 +115,7 @@ struct Group {
         valid = (1u << count) - 1u;
         for (std::size_t i = count; i < kGroup; ++i) line[i] = line[0];
     }
-    // Those whose bits are set, to `to`, which has room for all. Returns how many there are.
+    // Writes those whose bits are set to `to`, which has room for all. Returns their number.
     HWY_INLINE std::size_t put_selected(unsigned bits, std::uint16_t* to) const {
         std::size_t count = 0;
         for (std::size_t i = 0; i < kGroup; i += 8) count += put_eight(line + i, bits >> i & 255u, to + count);

@@ -140,7 +140,7 @@ class Model {
         for (int k = 0; k < 4; ++k) back_[k] = static_cast<std::ptrdiff_t>(cells[k] * pairs.objects);
     }
 
-    // decide(bit, probability) gives the bit: what it is told to code, or what it has read.
+    // decide(bit, probability) returns the bit: the given one when coding, the one read when decoding.
     template <class Decide>
     std::uint8_t pass(std::size_t cell, std::uint32_t object, std::uint8_t state, Decide&& decide) {
         const std::size_t around = surroundings(cell, object);

@@ -13,7 +13,7 @@ double at(const Plane& plane, const glm::dvec3& p) {
     return glm::dot(plane.normal, p) + plane.offset;
 }
 
-// Relative to coordinates: what is thinner has no inside that can be told from their rounding.
+// Relative to coordinates: the inside of anything thinner is lost in their rounding.
 constexpr double kFlat = 1e-12;
 
 // The plane through p, its normal turned toward `inside`; both are points of the body. False where it has no direction.

@@ -21,7 +21,7 @@ struct Blocker {
     Vector<Plane> eyes;
 };
 
-// None where the occluder is a patch, flat, or under a transform that is not valid.
+// Returns none for a patch, a flat occluder, or a transform that is not valid.
 [[nodiscard]] std::optional<Blocker> blocker_of(const PlacedOccluder& placed, const glm::dvec3& origin);
 
 // The corners of a convex body with eight of them, some of which may be equal.

@@ -60,7 +60,7 @@ void sort_around(Surface& surface, std::span<const SideOfFace> sides) {
         const glm::dvec3 r = surface.positions[surface.faces[side.face].corners[(side.corner + 2) % 3]] - a;
         placed.push_back({turn(glm::dot(x, r), glm::dot(y, r)), side});
     }
-    // Of faces that lie on each other, the first are those that are turned backwards, so that pairs back to back
+    // Among coincident faces, those that are turned backwards come first, so that pairs back to back
     // enclose nothing.
     std::sort(placed.begin(), placed.end(), [](const Placed& p, const Placed& q) {
         if (p.turn != q.turn) return p.turn < q.turn;

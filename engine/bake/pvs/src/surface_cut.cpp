@@ -126,7 +126,7 @@ void SurfaceCut::visit(std::uint32_t face, Seen side) {
     if (was_visited(face, side)) return;
     visited_[2 * face + static_cast<std::size_t>(side)] = flood_;
     open_.push_back({face, side});
-    // A back hides nothing there: what is behind it goes on in front.
+    // A back face hides nothing there: the space behind it continues in front.
     if (options_.sides == occlude::Sides::front && side == Seen::back) visit(face, Seen::front);
 }
 

@@ -309,7 +309,7 @@ Result<PatchReport> retriangulate_planar_patches(TriangleMesh& mesh, const Patch
             report.refused += !usable;
             if (!usable || (options.triangulation.method == Method::minimum_weight && !result.optimal))
                 ++report.unproven;
-            // Differences below the rounding of the projection are none.
+            // Ignores differences below the rounding of the projection.
             const bool lighter = usable && result.weight < patch.weight * (1.0 - 1e-12);
             report.weight_after += lighter ? result.weight : patch.weight;
             report.results.push_back(describe(patch, std::move(refused), lighter, result));

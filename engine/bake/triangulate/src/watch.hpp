@@ -19,8 +19,8 @@ class Watch {
         }
     }
 
-    // Counts so many steps of some 10 ns. Cheap enough for inner loops: the clock is read and the caller told only when
-    // many have been made since the last time.
+    // Counts so many steps of some 10 ns. Cheap enough for inner loops: the clock is read and the caller notified only
+    // when many have been made since the last time.
     [[nodiscard]] bool stopped(double fraction, std::size_t steps) {
         steps_ += steps;
         if (!stopped_ && steps_ >= next_check_) check(fraction);

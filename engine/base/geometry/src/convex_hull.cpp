@@ -218,7 +218,7 @@ bool solid_hull(Prepared& prepared, ConvexHull& hull) {
         int count = 0;
         FOREACHvertex_(facet->vertices) if (count < 3) corner[count++] =
             first[static_cast<std::uint32_t>(qh_pointid(qh, vertex->point))];
-        // Qhull keeps the corners of a simplicial facet in the order of their ids; its normal tells which way is out.
+        // Qhull keeps the corners of a simplicial facet in the order of their ids; its normal points outward.
         const glm::dvec3 a = prepared.points[corner[0]], b = prepared.points[corner[1]], c = prepared.points[corner[2]];
         if (glm::dot(glm::cross(b - a, c - a), glm::dvec3(facet->normal[0], facet->normal[1], facet->normal[2])) < 0.0)
             std::swap(corner[1], corner[2]);
@@ -237,7 +237,7 @@ Result<ConvexHull> hull_of(std::span<const Point> points) {
     if (!prepared) return tl::unexpected(prepared.error());
     const Vector<glm::dvec3>& p = prepared->points;
     ConvexHull hull;
-    // A segment, a triangle, a tetrahedron as large as can be had greedily: its sizes tell the rank.
+    // A segment, a triangle, a tetrahedron, each as large as a greedy choice makes it: their sizes determine the rank.
     const std::uint32_t a = argmax(p, [](const glm::dvec3& q) { return -q.x - q.y * 1e-3 - q.z * 1e-6; });
     const std::uint32_t b = argmax(p, [&](const glm::dvec3& q) { return glm::distance(q, p[a]); });
     const double size = glm::distance(p[a], p[b]);

@@ -42,7 +42,7 @@ int in_circle_sign(const Expansion<N>& ax, const Expansion<N>& ay, const Expansi
     return (a_part + b_part + c_part).sign();
 }
 
-// Nothing if the arguments are not small integers.
+// Returns no answer if the arguments are not small integers.
 std::optional<int> small_in_circle_sign(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
     const double bc = b.x * c.y, cb = c.x * b.y, ca = c.x * a.y, ac = a.x * c.y, ab = a.x * b.y, ba = b.x * a.y;
     const double a_lift = a.x * a.x + a.y * a.y, b_lift = b.x * b.x + b.y * b.y, c_lift = c.x * c.x + c.y * c.y;
@@ -78,8 +78,8 @@ DoubleDouble difference(double a, double b) {
     return {d.high, d.low};
 }
 
-// Points that are cocircular but for their rounding, as on discs and caps: 100 bits tell, a thirtieth of what
-// expansions cost. 0 if they do not tell. No path from the differences, which are exact, to the determinant has more
+// Points that are cocircular but for their rounding, as on discs and caps: 100 bits decide, at a thirtieth of what
+// expansions cost. 0 if they do not decide. No path from the differences, which are exact, to the determinant has more
 // than eight operations. So it errs by less than 2^-97 of the permanent, and the permanent in double by far less than
 // half of it. Below the threshold underflow would add to that.
 int in_circle_to_100_bits(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c, const glm::dvec2& d) {

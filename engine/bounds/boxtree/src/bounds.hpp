@@ -12,7 +12,7 @@ void clear(Node& node);
 void clear(Leaf& leaf);
 
 // A leaf's origin and units for boxes whose centres lie in `centers` and whose half edges are no longer than
-// `longest_edge`, with room to move. All lanes must be written anew.
+// `longest_edge`, with room to move. All lanes must be rewritten.
 void fit_frame(Leaf& leaf, const Aabb& centers, double longest_edge);
 [[nodiscard]] double longest_edge(const Obb& box);
 // Does the frame keep the promises that Leaf states?
@@ -26,7 +26,7 @@ void clear_lane(Leaf& leaf, unsigned lane);
 
 // Bounds of nodes and children are in coordinates along the node's axes, which count from the world's origin.
 
-// A node's origin and unit for children that lie in `whole`, with room to move; all lanes must be written anew.
+// A node's origin and unit for children that lie in `whole`, with room to move; all lanes must be rewritten.
 void fit_frame(Node& node, const Aabb& whole, const Axes& axes);
 [[nodiscard]] bool is_frame(const Node& node);
 

@@ -15,7 +15,7 @@ std::uint32_t ordered_bits(float value) {
 
 constexpr std::size_t kUnlimited = ~std::size_t{0};
 constexpr std::size_t kFew = 64;  // items that are sorted in one go
-// What an item costs in the passes of a sort and of a cut.
+// The cost of an item in the passes of a sort and of a cut.
 constexpr std::size_t kKeyWork = 4, kDigitWork = 2, kOrderWork = 1, kRateWork = 3, kMarkWork = 1, kPartWork = 2;
 
 }  // namespace

@@ -14,8 +14,8 @@
 namespace crofton::boxtree {
 
 // An item, or a cluster of them, as the builder sees it: its axis-aligned box in float around the scene's middle. It is
-// stored as (−low, high), so that a union is one maximum over eight numbers. It only decides who sits beside whom; the
-// bounds themselves are computed from the boxes. Entry 3 holds the id's bits, entry 7 nothing.
+// stored as (−low, high), so that a union is one maximum over eight numbers. It only decides which items are
+// neighbours; the bounds themselves are computed from the boxes. Entry 3 holds the id's bits, entry 7 nothing.
 struct alignas(16) BuildItem {
     float extreme[8];
 

@@ -118,7 +118,7 @@ LeafId Placement::best_leaf(const Obb& box) const {
     }
 }
 
-// A leaf of the node that all items have left; kNone if there is none.
+// An empty leaf of the node; kNone if it has none.
 LeafId Placement::empty_leaf_of(NodeId parent) const {
     const Node& node = nodes_[parent];
     for (unsigned lane = 0; lane < node.count; ++lane)
@@ -143,7 +143,7 @@ LeafId Placement::free_leaf() {
     return l;
 }
 
-// Half of a full leaf's items go to another leaf beside it.
+// Moves half of a full leaf's items to a new leaf next to it.
 void Placement::split_leaf(LeafId l) {
     BuildItem items[kWidth];
     for (unsigned lane = 0; lane < kWidth; ++lane) {
@@ -303,7 +303,7 @@ void Placement::make_node(NodeId n, std::span<const std::uint32_t> children, Nod
 // Brings the lanes up to date on the path from a changed leaf or node to the root. As in a refit, other lanes and the
 // frame stay where the frame takes the bound. Where all bounds lie along the same axes, the path ends at the first node
 // in which nothing changes, as those above depend on it alone. Bounds along other axes are made from the leaves, so
-// there the path goes on to the root.
+// there the path continues to the root.
 void Placement::refresh_above(std::uint32_t first) {
     const bool turned = structure_.axes_.size() > 1;
     std::uint32_t child = first;
@@ -321,7 +321,7 @@ void Placement::refresh_above(std::uint32_t first) {
 }
 
 // The same above both halves of what has been split. Below one node the first needs its lane alone: the second's, which
-// was empty, changes that node, so that its path goes on.
+// was empty, changes that node, so that its path continues.
 void Placement::refresh_above_both(std::uint32_t first, std::uint32_t second) {
     const Place place = place_of(first);
     if (place.node != place_of(second).node) {

@@ -65,7 +65,7 @@ struct Rebuilder::Work {
     Owner<Structure> next;
     Stage stage = Stage::add;
     std::size_t at = 0;  // item, slot, leaf, node or word of `changed`
-    // One bit an item: what has changed since the rebuild began, and which of these were placed anew.
+    // One bit an item: which items have changed since the rebuild began, and which of these were placed again.
     Vector<std::uint64_t> changed, placed;
     std::size_t changed_count = 0;
     std::size_t new_work = 0;  // what the changes since the last step are worth

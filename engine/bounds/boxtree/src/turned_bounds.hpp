@@ -2,11 +2,11 @@
 // Bounds along turned axes: a point p is in such a box iff rows[k] · p lies between its ends for each k, in real
 // arithmetic.
 //
-// What is lost. Axes are orthonormal to η = 2^-48: |rows[i] · rows[j] − δij| ≤ η. With A of these rows a node's
-// integers q stand for p = o + Aᵀq. Then A p = A o + q + (A Aᵀ − I) q is within 3 η |q|₁ of A o + q, and q is as near
-// to A (p − o). A product A p of three terms rounds by 3 · 2^-53 |p|₁, a difference by 2^-53 of its result. The ends of
-// a bound have a third of |q|₁ at least. So kTurnRounding times the sizes of origin and ends covers it all; every bound
-// is moved outward by as much.
+// The loss of precision. Axes are orthonormal to η = 2^-48: |rows[i] · rows[j] − δij| ≤ η. With A of these rows a
+// node's integers q stand for p = o + Aᵀq. Then A p = A o + q + (A Aᵀ − I) q is within 3 η |q|₁ of A o + q, and q is as
+// near to A (p − o). A product A p of three terms rounds by 3 · 2^-53 |p|₁, a difference by 2^-53 of its result. The
+// ends of a bound have a third of |q|₁ at least. So kTurnRounding times the sizes of origin and ends covers it all;
+// every bound is moved outward by as much.
 #pragma once
 #include <crofton/boxtree/layout.hpp>
 #include <crofton/geometry/box.hpp>

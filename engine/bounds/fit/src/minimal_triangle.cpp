@@ -21,7 +21,7 @@ namespace {
 
 using std::numbers::pi;
 
-// A convex polygon with one side on the x axis from 0 to (length, 0) and the rest above. `corners` go on
+// A convex polygon with one side on the x axis from 0 to (length, 0) and the rest above. `corners` continue
 // counter-clockwise and end with 0 again; `top` is the first of the highest. The right chain is [1, top], the left one
 // [top, end].
 struct Standing {

@@ -116,7 +116,7 @@ HWY_INLINE std::size_t list_word(std::uint64_t word, std::uint32_t base, std::ui
     return count;
 #else
     constexpr std::uint32_t kLanes = hn::MaxLanes(DU()), kAll = (std::uint32_t{1} << kLanes) - 1;
-    // Where little is seen, most words have few bits. Four are stored without a branch on how many there are.
+    // If few items are visible, most words have few bits. Four are stored without a branch on their number.
     constexpr std::size_t kFew = 4;
     std::size_t count = hwy::PopCount(word);
     if (count <= kFew) {
@@ -143,7 +143,7 @@ HWY_INLINE void mark_word(std::uint64_t word, std::uint64_t marks, MarkBytes val
     const auto all = hn::IfThenElse(marked, hn::Set(d8, values.marked), hn::Set(d8, values.others));
     hn::StoreU(hn::Compress(all, mask), d8, bytes);
 #else
-    // Few are marked. Room for a word's length is kept.
+    // Few are marked. Leaves room for the length of a word.
     std::memset(bytes, values.others, 64);
     for (std::uint64_t rest = word & marks; rest; rest &= rest - 1) {
         const std::uint64_t below = (rest & (~rest + 1)) - 1;
@@ -188,7 +188,7 @@ void mark_placed(const std::uint32_t* ids, std::size_t count, const std::uint64_
     }
 }
 
-// In place: what is kept never lies behind what is read next.
+// Works in place: the write position never passes the read position.
 std::size_t keep_ids(std::uint32_t* ids, std::size_t count, const std::uint64_t* bits, std::size_t words) {
     std::size_t kept = 0, i = 0;
 #if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3

@@ -16,7 +16,7 @@ std::size_t keep_ids_kernel(std::uint32_t* ids, std::size_t count, const std::ui
 // The indices of the bits that are set, ascending; returns how many. Room for 16 more is needed.
 std::size_t list_bits_kernel(const std::uint64_t* bits, std::size_t words, std::uint32_t* ids);
 
-// The same, and `before` gets for each word how many are listed before its own.
+// The same, and `before` receives, for each word, the number of indices listed before its own.
 std::size_t list_placed_bits_kernel(const std::uint64_t* bits, std::size_t words, std::uint32_t* ids,
                                     std::uint64_t* before);
 
@@ -24,7 +24,8 @@ std::size_t list_placed_bits_kernel(const std::uint64_t* bits, std::size_t words
 void mark_placed_kernel(const std::uint32_t* ids, std::size_t count, const std::uint64_t* bits,
                         const std::uint64_t* before, std::uint8_t value, std::uint8_t* bytes);
 
-// The first, and for each a byte: `marked` where its bit in `marks` is set, `others` where not. Room for 64 more bytes.
+// As the first, with a byte for each index: `marked` where its bit in `marks` is set, `others` where not. Room for 64
+// more bytes.
 struct MarkBytes {
     std::uint8_t marked, others;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Makes the kernels' view for each query: no more than the query needs, and without branches or calls.
+// Builds the kernels' view for a query: only what that query needs, without branches or calls.
 #include "kernel_view.hpp"
 
 #include <cstdlib>

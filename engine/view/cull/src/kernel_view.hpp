@@ -42,7 +42,7 @@ struct KernelView {
     std::uint32_t layer_mask;
 };
 
-// A block of boxes as the view sees it: its origin relative to the view's.
+// The origin of a block of boxes relative to the view's.
 struct LocalOrigin {
     double d[3];
     double size;       // Σ|d|

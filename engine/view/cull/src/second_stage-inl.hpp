@@ -82,7 +82,7 @@ struct BoxRows {
     }
 };
 
-// Those of the wanted lanes whose boxes certainly have a point inside all planes. The search starts at the centre. Each
+// Returns the wanted lanes whose boxes certainly have a point inside all planes. The search starts at the centre. Each
 // step goes to a little beyond the plane that the point is farthest outside of. A coordinate that has reached a face
 // stays there while the step leads out across it. Of the boxes that cross an edge of the frustum about one in fifty
 // needs more than six steps.

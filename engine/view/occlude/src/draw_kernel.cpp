@@ -31,7 +31,7 @@ struct Spans {
     std::int32_t common_first, common_last;  // of all rows
 };
 
-// No operation is contracted here: the bits are those of any target.
+// No operation is contracted, so every target gives the same bits.
 class BodyDrawer {
   public:
     BodyDrawer(const DrawBody& body, const DrawTarget& target) : body_(body), target_(target) {
@@ -140,7 +140,7 @@ class BodyDrawer {
         }
     }
 
-    // Over the tile, of a convex body.
+    // Over the tile, for a convex body.
     HWY_INLINE float nearest() const {
         float nearest = bases_[0] + rises_[0];
         for (std::size_t p = 1; p < plane_count_; ++p) nearest = std::min(nearest, bases_[p] + rises_[p]);
@@ -155,7 +155,7 @@ class BodyDrawer {
         return depth;
     }
 
-    // Both return the least of the tile's pixels then.
+    // Both return the least nearness of the tile's pixels after drawing.
     HWY_INLINE float draw_whole(float* pixels) const {
         const DF d;
         VF least = hn::Set(d, 3e38f);

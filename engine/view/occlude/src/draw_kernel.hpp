@@ -24,7 +24,7 @@ struct DrawBody {
     std::uint32_t place;  // in the order of drawing
 };
 
-// Where the body is nearer than what is there, it takes its place.
+// Replaces the stored nearness of each covered pixel where the body is nearer.
 void draw_body_kernel(const DrawBody& body, const DrawTarget& target);
 
 // Uncovers the pixels [0, width) of each row of a tile row; those beyond count as covered.

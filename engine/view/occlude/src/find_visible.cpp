@@ -126,7 +126,7 @@ class VisibleQuery {
             visible_.candidates_.push_back(items[std::countr_zero(rest)]);
     }
 
-    // Neither hidden nor beside the picture, of 64 boxes or fewer.
+    // Returns which of at most 64 boxes are neither hidden nor outside the picture.
     [[nodiscard]] std::uint64_t not_hidden(const Obb* boxes, const ItemId* items, std::size_t count) {
         const QueryBits bits = query_boxes_kernel(view_, reinterpret_cast<const unsigned char*>(boxes), items, count);
         if (cull::kCountStatistics) {
@@ -136,7 +136,7 @@ class VisibleQuery {
         return ~(bits.hidden | bits.outside_picture) & ~std::uint64_t{0} >> (64 - count);
     }
 
-    // By a bit an item.
+    // With one bit for each item.
     void sort(std::size_t items) {
         Vector<std::uint64_t>& bits = visible_.bits_;
         bits.assign((items + 63) / 64, 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Finds the occluders that hide a box: draws each again, alone, where the box is.
+// Finds the occluders that hide a box: draws each of them alone where the box is.
 #include <algorithm>
 #include <cmath>
 #include <crofton/occlude/occlusion.hpp>
@@ -10,7 +10,7 @@
 namespace crofton::occlude {
 namespace {
 
-// A box after the map: pixels from the middle, and how near.
+// A mapped box: pixels from the middle, and its nearness.
 struct MappedBox {
     double x[8], y[8], nearness[8];
     double most_nearness = -HUGE_VAL;
@@ -77,7 +77,7 @@ void OcclusionBuffer::hidden_by(const Obb& box, Vector<OccluderId>& ids) const {
     const float* const stored = data.pixels.data() + std::size_t{first} * data.tile_columns * kTilePixels;
     Vector<float> alone(tiles * kTilePixels), least(tiles), front(tiles);
     Vector<TileCovers> covers(tiles);
-    // Its depth is stored; or that which is does not do, and the box is behind it.
+    // Its depth is stored; or the stored depth does not suffice, and the box is behind this one.
     const auto add_if_needed = [&](OccluderId id, bool behind) {
         for (std::uint32_t y = window.y0; y <= window.y1; ++y)
             for (std::uint32_t x = window.x0; x <= window.x1; ++x) {

@@ -34,7 +34,7 @@ struct Bounds {
     }
 };
 
-// A half-plane as it comes: x · column + y · row + w ≥ 0 in pixels from the middle.
+// An unnormalised half-plane: x · column + y · row + w ≥ 0 in pixels from the middle.
 struct Line {
     double x, y, w;
 };

@@ -37,7 +37,7 @@ struct PatchEdge {
 void draw_triangle_kernel(const PatchTriangle& triangle, const PatchTarget& target);
 void draw_contour_kernel(const PatchEdge& edge, const PatchTarget& target);
 
-// Leaves in `reached` what no contour meets, and uncovers all else.
+// Keeps in `reached` the pixels that no contour meets, and uncovers the others.
 void finish_patch_kernel(const PatchTarget& target, std::size_t tiles);
 
 }  // namespace crofton::occlude

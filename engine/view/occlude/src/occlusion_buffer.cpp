@@ -63,7 +63,7 @@ void sort_front_to_back(OcclusionBuffer::Data& data, std::size_t chunks) {
     }
 }
 
-// Each tile of the patch in rows [first, end) takes what is nearer.
+// Keeps the nearer depth in each tile of the patch in rows [first, end).
 void merge_patch(OcclusionBuffer::Data& data, const PreparedBodies& bodies, const PreparedPatch& patch,
                  std::uint32_t first, std::uint32_t end) {
     const std::uint32_t columns = patch.end_column - patch.first_column;
@@ -103,7 +103,7 @@ void draw_band(OcclusionBuffer::Data& data, std::size_t chunks, std::uint32_t fi
         for (const PreparedPatch& patch : data.chunks[c].patches) merge_patch(data, data.chunks[c], patch, first, end);
 }
 
-// Each level from the one below.
+// Computes each level from the one below.
 void fill_levels(OcclusionBuffer::Data& data) {
     const std::uint32_t stride = data.tile_columns, padded = data.padded_rows;
     std::uint32_t columns = data.tile_columns, rows = data.tile_rows, from = 0;

@@ -35,7 +35,7 @@ glm::dvec3 near_corner(const OcclusionView& view, unsigned i) {
            (view.frustum.origin - view.origin);
 }
 
-// Half of the least w at the corners: every point that the view sees lies beyond.
+// Half of the least w at the corners; every point in the view has a larger w.
 double least_w_of(const OcclusionView& view) {
     double least = std::numeric_limits<double>::infinity();
     for (unsigned i = 0; i < 4; ++i)
@@ -43,7 +43,7 @@ double least_w_of(const OcclusionView& view) {
     return 0.5 * least;
 }
 
-// Whether a row is one number over all that the frustum holds, but for a share of 1e-12 as rounding leaves it.
+// Whether a row is constant over the frustum to within 1e-12, the share that rounding may leave.
 bool is_constant(const Row& row, const Frustum& frustum, const glm::dvec3& origin) {
     if (direction_of(row) == glm::dvec3(0.0)) return true;
     const auto corners = frustum_corners(frustum);
@@ -94,7 +94,7 @@ Result<OcclusionView> occlusion_view_of(const glm::dmat4& to_clip, DepthRange de
     OcclusionView view;
     view.frustum = *frustum;
     const Row x = row_of(to_clip, 0), y = row_of(to_clip, 1), w = row_of(to_clip, 3);
-    // A near plane at infinity has been left out, and then the order of the planes is another.
+    // A near plane at infinity has been left out, which changes the order of the planes.
     const Row z = row_of(to_clip, 2);
     const bool reversed = depth == DepthRange::reversed_zero_to_one;
     glm::dvec3 near_normal = direction_of(z);
@@ -119,7 +119,7 @@ Result<OcclusionView> occlusion_view_of(const glm::dmat4& to_clip, DepthRange de
         view.rows = {row_of(direction_of(x), 0.0), row_of(direction_of(y), 0.0), row_of(direction_of(w), 0.0),
                      row_of(glm::dvec3(0.0), 1.0)};
     } else {
-        // In each component, so that may_use() can tell from which side rays come upon a plane.
+        // In each component, so that may_use() knows from which side rays reach a plane.
         glm::dvec3 away = direction_across(direction_of(x), direction_of(y));
         if (glm::dot(away, frustum->planes[kNearPlane].normal) < 0.0) away = -away;
         view.origin = origin;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A view in pixels: the map that both occluders and questions go through.
+// A view in pixels: the map for occluders and for queried boxes.
 #pragma once
 #include <crofton/occlude/occlusion.hpp>
 #include <cstdint>

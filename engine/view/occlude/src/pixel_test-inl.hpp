@@ -47,7 +47,7 @@ class ShadowTest {
             if (!hn::AllTrue(DF(), hold(Planes(shadow, first, perspective_)))) return false;
         return shadow.count != 0;
     }
-    // Behind all of the body's faces.
+    // Whether it is behind all of the body's faces.
     HWY_INLINE bool is_behind(const BodyShadow& shadow) const {
         for (std::size_t first = 0; first < (std::min)(shadow.faces, shadow.count); first += hn::Lanes(DF())) {
             const std::uint32_t missed = ~mask_bits(DF(), hold(Planes(shadow, first, perspective_)));
@@ -119,7 +119,7 @@ class PixelTest {
         return false;
     }
 
-    // False where the box is seen in one of the pixels whose bits are set, as far as the buffer knows.
+    // Returns false if the buffer shows the box in one of the pixels whose bits are set.
     HWY_INLINE bool hides(std::size_t tile, std::uint64_t mask) {
         if (view_.least[tile] > nearness_) return true;
         std::uint64_t open = farther_pixels(view_.pixels + kTilePixels * tile, nearness_) & mask;
@@ -130,7 +130,7 @@ class PixelTest {
     }
 
   private:
-    // The last few answers are kept.
+    // Caches the last few answers.
     HWY_INLINE bool is_behind(std::uint32_t body) {
         for (const Known& known : known_)
             if (known.body == body) return known.behind;

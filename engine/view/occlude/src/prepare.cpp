@@ -32,7 +32,7 @@ class Preparation {
         out_.planes.resize(result_.first_plane);
     }
 
-    // False where all points are beyond one side of the window, or before a cut.
+    // Returns false if all points are beyond one side of the window, or before a cut.
     bool classify_points() {
         const MapSizes& sizes = body_.sizes;
         double most_near = -HUGE_VAL, least_near = HUGE_VAL;
@@ -109,7 +109,7 @@ class Preparation {
         return beyond;
     }
 
-    // False where floats cannot hold the plane.
+    // Returns false if floats cannot hold the plane.
     bool add_plane(const Line& plane, double error) {
         // The middle of the corner's pixel, and from there to the farthest corner of the square.
         const double middle = plane.w + plane.x * (0.5 - map_.half_width) + plane.y * (0.5 - map_.half_height) -
@@ -152,7 +152,7 @@ class Preparation {
         return true;
     }
 
-    // Edges with exactly one face that is seen, as that face goes round them.
+    // Edges with exactly one visible face, in the direction of that face.
     bool add_contour() {
         for (const ShapeEdge& edge : body_.edges) {
             const bool left = out_.seen[edge.left] != 0, right = edge.right != kNone && out_.seen[edge.right] != 0;
@@ -170,7 +170,7 @@ class Preparation {
         return true;
     }
 
-    // Rounds the half-plane line ≥ error inward. False where no square of the picture is left.
+    // Rounds the half-plane line ≥ error inward. Returns false if no square of the picture is left.
     bool add_line(const Line& line, double error) {
         const double w = line.w - error, ax = std::fabs(line.x), ay = std::fabs(line.y);
         const double most = ax * map_.half_width + ay * map_.half_height;

@@ -11,7 +11,7 @@
 namespace crofton::occlude {
 namespace {
 
-// Swamps what rounding in double does to rows and columns below 4096.
+// Larger than any rounding in double of rows and columns below 4096.
 constexpr double kLeastMargin = 0x1p-16;
 
 class MeshPreparation {
@@ -33,7 +33,7 @@ class MeshPreparation {
     }
 
   private:
-    // False where rounding could move points by a noticeable part of a pixel, or nothing is beyond the cuts.
+    // Returns false if rounding could move points by a noticeable part of a pixel, or if nothing is beyond the cuts.
     bool project() {
         const MapSizes& sizes = placed_.sizes;
         out_.pixels.resize(placed_.points.size());
@@ -109,7 +109,7 @@ class MeshPreparation {
         out_.patches.push_back(patch_);
     }
 
-    // A triangle that crosses a cut: cut off there, within its own three edges.
+    // Clips a triangle that crosses a cut, within its own three edges.
     void add_alone(std::size_t t) {
         const MappedPoint points[3] = {placed_.points[shape_.triangles[3 * t]],
                                        placed_.points[shape_.triangles[3 * t + 1]],
@@ -147,7 +147,7 @@ class MeshPreparation {
         const double farthest =
             std::min({points[0].nearness, points[1].nearness, points[2].nearness}) - nearness_error_;
         const Line& n = plane.nearness;
-        // The evaluation rounds, too.
+        // Includes the rounding of the evaluation.
         const double range = std::fabs(n.x) * map_.width + std::fabs(n.y) * map_.height + std::fabs(n.w);
         const double lower = plane.error + 0x1p-50 * range + 0.5 * (std::fabs(n.x) + std::fabs(n.y));
         // How far from the triangle a centre may be, in units of its barycentric coordinates. The square around it,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Occluders as the drawing kernel takes them: half-planes of the picture, and planes of depth.
+// The drawing kernel's input: half-planes of the picture, and planes of depth.
 #pragma once
 #include <crofton/core/memory.hpp>
 #include <crofton/occlude/occluder.hpp>
@@ -57,7 +57,7 @@ struct MappedPoint {
     double cut[2];
 };
 
-// In pixels from the picture's corner, and how near.
+// In pixels from the picture's corner, and its nearness.
 struct PixelPoint {
     double x, y, nearness;
     bool usable;  // beyond the cuts, certainly
@@ -73,7 +73,7 @@ struct PreparedBodies {
     Vector<std::uint64_t> reached;  // a word for each 64 values: which of them are covered
     std::uint64_t triangles = 0;    // that were drawn one by one
 
-    // For prepare()'s own use.
+    // Scratch memory of prepare().
     Vector<std::uint8_t> seen, facing;
     Vector<Side> left, right;
     Vector<ShadowPlane> fronts, lines;

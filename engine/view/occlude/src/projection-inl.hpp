@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Boxes projected into a buffer's pixels, rounded outward, and what the coarse levels of depth say of them. Compiled
+// Projects boxes into a buffer's pixels, rounded outward, and tests them against the coarse levels of depth. Compiled
 // once per instruction set (Highway).
 #include <hwy/highway.h>
 
@@ -87,7 +87,7 @@ struct Projection {
     alignas(32) float forms[3][4][kLanes];  // column, row, and w or z: at the centre, and along the half edges
     alignas(32) float errors[3][kLanes];    // of a form at a corner
 
-    // Fills lanes [at, at + Lanes) and says what is known of them already.
+    // Fills lanes [at, at + Lanes) and returns the lanes that are already decided.
     HWY_INLINE LaneBits project(const QueryView& view, const Depths& depths, const VF (&center)[3],
                                 const VF (&edge)[3][3], VF l1_radius, std::size_t at) {
         const DF d;
@@ -188,7 +188,7 @@ struct Projection {
                                    hn::Max(width, height));
         VF spread = hn::Max(error[0], error[1]), most, in_front;
         if (kPerspective) {
-            // No point has less w than this; all quotients below are by as much at least.
+            // A lower bound on w at all points; every quotient below divides by at least this.
             const VF low_w = hn::Sub(bounds.low_v, error[2]);
             in_front = low_w;
             const VF inverse = hn::Div(hn::Set(d, 1.0f), low_w);
@@ -230,7 +230,7 @@ struct Projection {
         if (kPerspective && usable_bits != (1u << hn::Lanes(d)) - 1)
             outside_bits |= mask_bits(d, outside_of_sides(view, form, error, bounds)) & ~usable_bits;
         const std::uint32_t hidden_bits = mask_bits(d, hidden) & usable_bits & ~outside_bits;
-        // A short way to say that a box is seen: nothing in the tile of its middle is nearer than its centre.
+        // A shortcut: the box is visible if nothing in the tile of its middle is nearer than its centre.
         const VI middle_x = hn::ShiftRight<4>(hn::Add(x0, x1)), middle_y = hn::ShiftRight<4>(hn::Add(y0, y1));
         const VF front = depths.front_at(middle_x, middle_y);
         const auto seen =

@@ -29,7 +29,7 @@ static_assert(sizeof(Obb) == 72 && offsetof(Obb, axes) == 24 && offsetof(Obb, ha
 struct BoxBatch {
     alignas(64) float quads[4][kLanes][4];
 
-    // In vectors: what is stored in narrow pieces stalls wider loads. The row's last number has no meaning.
+    // Stores whole vectors, because narrow stores stall wider loads. The row's last number has no meaning.
     HWY_INLINE void copy(std::size_t to, const unsigned char* box, const double* origin) {
 #if HWY_TARGET == HWY_SCALAR
         for (std::size_t j = 0; j < 3; ++j) {
@@ -80,21 +80,21 @@ struct MiddlePixel {
     }
 };
 
-// First whether one body hides the box, then whether its pixels do.
+// Tests first whether one body hides the box, then whether its pixels do.
 inline bool is_hidden(const QueryView& view, const Projection& boxes, std::size_t box) {
     const PixelRectangle r(boxes, box);
     PixelTest test(view, boxes, box);
     const MiddlePixel middle(view, r);
     const std::uint64_t bit = std::uint64_t{1} << middle.place;
     if (test.is_in_shadow(middle.tile, bit)) return true;
-    // A pixel in the middle that is farther than the box's centre is a short way to say that the box is seen.
+    // A shortcut: the box is visible if a pixel in its middle is farther than its centre.
     const float at = view.pixels[kTilePixels * middle.tile + middle.place], third = boxes.forms[2][0][box];
     const bool farther = view.perspective ? !(at * third > 1.0f) : !(at > third);
     if (farther && !test.hides(middle.tile, bit)) return false;
     return outline_is_hidden(view, boxes, box, r, test);
 }
 
-// Boxes are projected 64 at a time before any is asked, so that what they ask is in the cache by then.
+// Projects 64 boxes before testing any, so that the tiles which they test are in the cache by then.
 class Batch {
   public:
     explicit HWY_INLINE Batch(const QueryView& view) : view_(view) {}

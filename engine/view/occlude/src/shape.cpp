@@ -155,7 +155,7 @@ void connect(Shape& shape) {
     return true;
 }
 
-// Faces of a convex shape, each told by its widest triangle, and the edges between them.
+// Faces of a convex shape, each represented by its widest triangle, and the edges between them.
 void find_faces(Shape& shape) {
     Vector<std::uint32_t> parents(shape.triangle_count()), face_of(shape.triangle_count(), kNone);
     std::iota(parents.begin(), parents.end(), 0u);

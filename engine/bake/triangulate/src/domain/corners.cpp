@@ -66,8 +66,8 @@ Index Domain::point_at(Index v, Index mark, Index left_mark) const {
     return found;
 }
 
-// Two constraints bound the corner's sector. Turning clockwise from the corner, the first one with a point here tells.
-// On which side of a slit that is, tells the one on the left.
+// Two constraints bound the corner's sector. Turning clockwise from the corner, the first one with a point here
+// decides. The one on the left decides on which side of a slit that is.
 Index Domain::input_index(Index e) const {
     const Index v = mesh_.origin[e];
     if (shared_[v] == 0) return input_of_[v];

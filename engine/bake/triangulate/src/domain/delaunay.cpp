@@ -157,7 +157,7 @@ class DivideAndConquer {
         find_lower_tangent(left, right);
         const Index bottom = 8 * cut - 8, top = bottom + 4;
         set_triangle(bottom, right.vertex, left.vertex, kNone);
-        // The ghosts beside the seam: on the sides that leave the left end and arrive at the right end of the base.
+        // The ghosts next to the seam: on the sides that leave the left end and arrive at the right end of the base.
         Index l = bottom, r = bottom;
         if (left.ghost != kNone) {
             l = left.ghost;

@@ -66,11 +66,11 @@ void Domain::find_side(Index begin, Index end) {
     for (Index i = begin; i < end; ++i) left_inside_[vertex_of_[i]] = left;
 }
 
-// Where all rings are simple and disjoint, each tells on which side of its edges the inside lies. Labels that differ
+// If all rings are simple and disjoint, each determines on which side of its edges the inside lies. Labels that differ
 // across every edge and nowhere else, and leave the outside out, are the parity of the rings around a triangle. If
-// every ring also finds beside it what it tells, holes lie inside an odd number of rings, and the outer ring inside an
-// even one. So the outer ring is around all others, and no hole around another. Holes of one point tell nothing.
-// Returns false if it does not fit, or if too many triangles lie far from the rings.
+// every ring also finds next to it what it determines, holes lie inside an odd number of rings, and the outer ring
+// inside an even one. So the outer ring is around all others, and no hole around another. Holes of one point determine
+// nothing. Returns false if it does not fit, or if too many triangles lie far from the rings.
 bool Domain::label_triangles() {
     queue_.clear();
     for (Index t = 0; t < inside_.size(); ++t) {
@@ -209,7 +209,7 @@ Result<void> Domain::check_holes() const {
     return slits ? check_slits() : Result<void>{};
 }
 
-// Each part of a hole of two points has the inside beside it.
+// Each part of a hole of two points has the inside next to it.
 Result<void> Domain::check_slits() const {
     for (Index e = 0; e < mesh_.origin.size(); ++e) {
         const Index twin = mesh_.twin[e];

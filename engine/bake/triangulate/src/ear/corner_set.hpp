@@ -7,7 +7,7 @@
 
 namespace crofton::triangulate {
 
-// A tree of bits, 64 to a node: a bit tells whether anything below it is set. The next number is found in O(log64 n).
+// A tree of bits, 64 to a node: a bit is set if any bit below it is. The next number is found in O(log64 n).
 class CornerSet {
   public:
     static constexpr std::uint32_t kNothing = ~std::uint32_t{0};

@@ -48,7 +48,7 @@ Index EarClipping::find(Index piece) {
     return piece;
 }
 
-// Rings that touch nothing are the pieces of the boundary; else edges tell which vertices hang together.
+// Rings that touch nothing are the pieces of the boundary; otherwise edges connect vertices to pieces.
 void EarClipping::find_pieces() {
     const auto& mesh = *mesh_;
     piece_.resize(points_.size());

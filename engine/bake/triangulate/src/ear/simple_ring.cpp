@@ -80,7 +80,7 @@ int SimpleRing::turn_of(std::span<const glm::dvec2> points) {
         const glm::dvec2 &before = points[i == 0 ? count - 1 : i - 1], &at = points[i],
                          &after = points[i + 1 == count ? 0 : i + 1];
         if (at == after) return 0;
-        // Flat corners go on, others may turn anywhere.
+        // Flat corners continue straight, others may turn anywhere.
         if (orientation(before, at, after) == 0 && comes_before(before, at) != comes_before(at, after)) return 0;
         if (comes_before(at, points[lowest])) lowest = i;
     }

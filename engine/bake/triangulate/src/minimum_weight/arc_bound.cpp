@@ -171,7 +171,7 @@ void ArcBound::fill_cells() {
 
 // enclosed_: of an interval that a side or a diagonal closes, with that. bare_: the same, where nothing encloses it in
 // turn. reached_: of any interval, in one bare piece or in several. The diagonal from end to end may be another arc's
-// too: it is not counted. Nor is what leaves beside the ends, where one triangle may be beyond two arcs.
+// too: it is not counted. Nor is what leaves next to the ends, where one triangle may be beyond two arcs.
 double ArcBound::least_weight(std::size_t sides) {
     const std::size_t n = sides + 1;
     enclosed_.assign(n * n, kInfinity);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How light any triangulation can be, told by short pieces of its boundary: tight where the boundary is finely divided.
+// A lower bound on the weight of any triangulation, from short pieces of its boundary: tight if the boundary is finely
+// divided.
 #pragma once
 #include <array>
 

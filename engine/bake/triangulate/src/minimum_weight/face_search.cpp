@@ -281,7 +281,7 @@ FaceSearch::Outcome FaceSearch::solve_rest(std::size_t depth, Watch& watch) {
     find_faces(level.graph, CandidateGraph::kFixed, level.faces);
     const auto pieces = static_cast<Index>(level.faces.component.size());
     Outcome result = Outcome::solved;
-    // Simple faces first: they tell at once if this branch has no triangulation.
+    // Simple faces first: they show at once whether this branch has no triangulation.
     program_.start(level.points, level.graph);
     for (Index w = 0; w < pieces; ++w) {
         if (level.faces.component[w] != w || level.faces.component_size[w] != 1) continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The exact minimum among the triangulations that an interval programme in double cannot tell apart.
+// The exact minimum among the triangulations that an interval programme in double cannot distinguish.
 #pragma once
 #include <array>
 #include <crofton/core/memory.hpp>
@@ -32,7 +32,7 @@ struct IntervalTable {
 // be in a minimum. Then goes up again and keeps of each interval the least alternative, exactly; of equal ones the one
 // whose apex comes first.
 //
-// Values to 100 bits tell nearly all alternatives apart. Symmetric faces have many that are truly equal, so intervals
+// Values to 100 bits distinguish nearly all alternatives. Symmetric faces have many that are truly equal, so intervals
 // proven to be of equal weight share a class: two alternatives made of the same classes tie. RootSums decides the rest,
 // and what it finds equal joins the classes.
 class IntervalChoice {

@@ -7,7 +7,7 @@
 namespace crofton::triangulate {
 
 // Dickerson, Keil and Montague (1997); Beirouti and Snoeyink (1998). In a minimum-weight triangulation every edge that
-// is no constraint is the shorter diagonal of the two triangles beside it, or they form no convex quadrilateral. A flip
+// is no constraint is the shorter diagonal of its two triangles, or they form no convex quadrilateral. A flip
 // crosses no constraint, so this holds under constraints as well. Ties go to the edge with the smaller vertex pair.
 // That is the unique minimum for lengths with an infinitesimal added by rank, and a minimum for the lengths themselves.
 class LmtSkeleton {

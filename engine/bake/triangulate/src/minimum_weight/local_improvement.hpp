@@ -16,7 +16,7 @@ class LocalImprovement {
   public:
     // The triangulation that the domain's mesh holds.
     void start_from_mesh(const Domain& domain);
-    // One of the caller's indices; false if it is none of this domain.
+    // One of the caller's indices; false if it is not in this domain.
     [[nodiscard]] bool start_from_triangles(const Domain& domain,
                                             std::span<const std::array<std::uint32_t, 3>> triangles);
     // Ends early where the watch is cancelled; the triangulation is one all the same.

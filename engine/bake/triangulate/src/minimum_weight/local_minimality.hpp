@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// When an edge is the better diagonal of the two triangles beside it.
+// Whether an edge is the better diagonal of its two triangles.
 #pragma once
 #include <cmath>
 #include <crofton/geometry/predicates.hpp>
@@ -10,7 +10,7 @@
 
 namespace crofton::triangulate {
 
-// As shorter(), where rounded lengths do not tell.
+// As shorter(), where rounded lengths cannot decide.
 [[nodiscard]] bool shorter_exactly(std::span<const glm::dvec2> points, Index a, Index b, Index p, Index q);
 
 // Whether edge ab comes before pq: the shorter one does, exactly; of equal ones that with the smaller pair of vertices.

@@ -81,7 +81,7 @@ Result<bool> MinimumWeight::solve(const Domain& domain, const TriangulateOptions
 }
 
 // The vertices of a strictly convex polygon counter-clockwise, from the first one; false for others. No diagonal of it
-// can be excluded by what lies beside it, so the programme needs no candidates.
+// can be excluded by its neighbourhood, so the programme needs no candidates.
 bool MinimumWeight::collect_convex_ring(const Domain& domain, std::size_t bytes) {
     const auto points = domain.mesh().points;
     const auto count = static_cast<Index>(points.size());

@@ -15,8 +15,8 @@ namespace crofton::triangulate {
 
 class MinimumWeight {
   public:
-    // False if a budget ran out before all faces had a triangulation; then known_edges() tells what is known. Errors:
-    // cancelled.
+    // False if a budget ran out before all faces had a triangulation; then known_edges() has the edges found so far.
+    // Errors: cancelled.
     [[nodiscard]] Result<bool> solve(const Domain& domain, const TriangulateOptions& options, Watch& watch,
                                      Triangulation& result);
     // Diagonals that are proven to be in a minimum-weight triangulation, or in the best one known of a face.

@@ -8,7 +8,7 @@
 
 namespace crofton::triangulate {
 namespace {
-// The shares of the work that are done when listing and pruning begin, as told to the caller.
+// The shares of the work that are done when listing and pruning begin, as reported to the caller.
 constexpr double kListing = 0.5, kPruning = 0.55;
 }  // namespace
 

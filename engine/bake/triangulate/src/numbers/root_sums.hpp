@@ -15,8 +15,8 @@ struct Segment {
 };
 
 // The sign of Σ|a| − Σ|b|, proven. Common segments and equal lengths cancel. What remains is summed to about 100 bits,
-// then to 200. If that does not tell, the squared lengths are sorted into classes, N ~ M when N·M is a square. Roots of
-// different classes are linearly independent over the rationals. So the difference is 0 if and only if every class's
+// then to 200. If that does not decide, the squared lengths are sorted into classes, N ~ M when N·M is a square. Roots
+// of different classes are linearly independent over the rationals. So the difference is 0 if and only if every class's
 // coefficient is. Otherwise the sum is evaluated with ever more bits until its sign shows, which it must.
 class RootSums {
   public:

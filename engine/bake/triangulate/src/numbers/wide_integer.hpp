@@ -20,7 +20,7 @@ class WideInteger {
     [[nodiscard]] WideInteger operator*(const WideInteger& other) const;
     [[nodiscard]] WideInteger operator<<(std::size_t bits) const;
 
-    // floor(√x); `exact` tells whether x is a square.
+    // floor(√x); `exact` is set if x is a square.
     [[nodiscard]] static WideInteger square_root(const WideInteger& x, bool& exact);
 
   private:

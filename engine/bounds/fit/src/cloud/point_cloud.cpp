@@ -247,7 +247,7 @@ Supports PointCloud::supports(const glm::dmat3& directions) {
         wanted_[i] = !skip;
     }
     find_extents(directions);
-    // Scan in double every chunk that may hold the support point, as far as its rounded extents tell.
+    // Scan in double every chunk that may hold the support point, judging by its rounded extents.
     for (std::size_t k = 0; k < 3; ++k) {
         const double* low = low_.data() + k * chunks_;
         const double* high = high_.data() + k * chunks_;

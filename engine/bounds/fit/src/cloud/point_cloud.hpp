@@ -90,7 +90,7 @@ class PointCloud {
         return floats_ ? glm::dvec3(glm::vec3(floats_[3 * i], floats_[3 * i + 1], floats_[3 * i + 2]))
                        : glm::dvec3(doubles_[3 * i], doubles_[3 * i + 1], doubles_[3 * i + 2]);
     }
-    // Gives no −0, since shift_ is none: −0 and 0 are one number.
+    // Never gives −0, since shift_ is not −0: so −0 and 0 become one number.
     [[nodiscard]] glm::dvec3 normalised(std::size_t i) const { return (world(i) + shift_) * scale_; }
 
     const float* floats_ = nullptr;

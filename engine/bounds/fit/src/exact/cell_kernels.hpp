@@ -23,7 +23,7 @@ struct CellBatch {
     alignas(64) double center[3][kBatch];
     glm::dvec3 half;
     // Results: no orientation in the cell has a lower value than `bound`; `value` is that of the centre; `spread[i]`
-    // tells along which coordinate the value varies most; `tilt[i]` bounds the components of the half-angle tangent
+    // is the coordinate along which the value varies most; `tilt[i]` bounds the components of the half-angle tangent
     // vector of the turns from the centre to any orientation of the cell; `support` are the centre's support points.
     alignas(64) double bound[kBatch];
     alignas(64) double value[kBatch];

@@ -83,7 +83,7 @@ void supports_of_frame(const SmallSet& points, const float frame[9], float suppo
             high = hn::IfThenElse(hn::Gt(t, range.high), index, high);
             range.include(t);
         }
-        // Of the lanes with the extreme value, the least index wins. Padding repeats point 0, which then wins itself.
+        // The least index among the lanes with the extreme value wins. Padding repeats point 0, which then wins itself.
         const auto none = hn::Set(d, kHuge);
         const auto least = hn::MinOfLanes(d, range.low), greatest = hn::MaxOfLanes(d, range.high);
         supports[2 * k] = hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(hn::Eq(range.high, greatest), high, none)));

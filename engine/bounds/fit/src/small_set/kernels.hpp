@@ -53,7 +53,7 @@ void supports_of_frames(const SmallSet& points, const FloatWeights& weights, Fra
 void supports_of_frame(const SmallSet& points, const float frame[9], float supports[6], float widths[3]);
 
 // A turn of a frame about `axis` to the best of 32 angles. First sixteen over a right angle; then those that make a
-// side flush with one of the sixteen chords between support points beside the best of these.
+// side flush with one of the sixteen chords between support points next to the best of these.
 struct Turn {
     float axis[3], right[3], up[3];  // the frame
     float cosine, sine;              // result: the new `right` is cosine · right + sine · up

@@ -15,7 +15,7 @@ Verdict classify_any(const Frustum& frustum, const Bound& bound, CullMode mode) 
     return classify_usable(frustum, bound, mode);
 }
 
-// Decides by the box's extents along the axes, which tell for planes that are far. Keeps the others' constraints.
+// Decides by the box's extents along the axes, which suffices for far planes. Keeps the constraints of the others.
 template <class Box>
 Verdict classify_box(const Frustum& frustum, const Box& box, CullMode mode) {
     Constraint constraints[Frustum::kMaxPlanes];

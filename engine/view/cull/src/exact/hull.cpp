@@ -76,8 +76,8 @@ Answer is_common_corner(const Frustum& frustum, const convex::Hull& hull, std::a
     return Answer::yes;
 }
 
-// Whether a view that no triangle of the hull meets lies within the hull, not beside it. A closed volume in a hull has
-// corners, and any one of them tells.
+// Whether a view that no triangle of the hull meets lies within the hull, not outside. A closed volume in a hull has
+// corners, and any one of them decides.
 bool holds_view(const Frustum& frustum, const convex::Hull& hull) {
     for (std::uint32_t i = 0; i < frustum.plane_count; ++i)
         for (std::uint32_t j = i + 1; j < frustum.plane_count; ++j)

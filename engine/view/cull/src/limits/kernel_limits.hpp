@@ -5,8 +5,9 @@
 
 namespace crofton::cull {
 
-// Squares of limits; [0] for all items, [1] for those that hysteresis keeps longer. What is off is infinite, or 0 for
-// the least radius. What floats cannot square is off in [1], where it would drop, and in [0] keeps nothing.
+// Squares of limits; [0] for all items, [1] for those that hysteresis keeps longer. A limit that is off is infinite, or
+// 0 for the least radius. A limit whose square is no float is off in [1], where it would drop, and in [0] keeps
+// nothing.
 struct KernelLimits {
     double eye[3];
     float radii[2];

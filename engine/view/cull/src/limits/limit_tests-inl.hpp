@@ -21,7 +21,7 @@ struct LimitTest {
     MF dropped, kept;
 };
 
-// The limits of a walk that has none.
+// For walks without limits.
 struct NoLimits {
     static constexpr bool kAny = false;
 };
@@ -36,8 +36,8 @@ class LimitTester {
 
     HWY_INLINE void prefetch(boxtree::NodeId node) const { hwy::Prefetch(limits_.radii_below + node); }
 
-    // Children l on of a node, along its axes. A centre lies in its child's box. 2^-18 of the coordinates covers the
-    // roundings of a gap, 2^-10 those of squares and limits.
+    // The children of a node from lane l on, along its axes. A centre lies in its child's box. 2^-18 of the coordinates
+    // covers the roundings of a gap, 2^-10 those of squares and limits.
     HWY_INLINE LimitTest test(const boxtree::Node& node, const boxtree::Axes& axes, boxtree::NodeId id, std::size_t l) {
         const DF d;
         const DU du;

@@ -21,7 +21,7 @@ namespace crofton::cull::HWY_NAMESPACE {
 
 static_assert(sizeof(Obb) == 72 && offsetof(Obb, axes) == 24 && offsetof(Obb, half_extents) == 60);
 
-// A box of the caller's, and where the view is.
+// The caller's boxes, and the view's origin.
 struct DirectBox {
     const unsigned char* bytes;
     const double* origin;
@@ -149,7 +149,7 @@ HWY_INLINE MF are_valid(const DirectLanes& boxes) {
     return hn::And(hn::Le(squares, hn::Set(DF(), 4.0f)), hn::Lt(size, hn::Set(DF(), 8e29f)));
 }
 
-// By spheres around the boxes, which settle most of many. `error_bound` is the largest of the planes'.
+// By spheres around the boxes, which decide most of many boxes. `error_bound` is the largest of the planes'.
 HWY_INLINE DirectBits test_spheres(const DirectLanes& boxes, const DirectPlane* planes, std::uint32_t count,
                                    float error_bound) {
     const DF d;
@@ -238,13 +238,13 @@ class DirectQuery {
     static constexpr std::size_t kLanes = hn::MaxLanes(DF());
     static HWY_INLINE std::uint64_t bit(std::uint32_t i) { return std::uint64_t{1} << (i % 64); }
 
-    // Lists what the planes leave open; returns how many straddle for certain.
+    // Lists the boxes that the planes do not decide; returns how many certainly straddle.
     std::size_t test_all() {
         const KernelView& view = *in_.view;
         DirectPlane planes[KernelView::kMaxPlanes];
         float error_bound = 0.0f;
         for (std::uint32_t i = 0; i < view.plane_count; ++i) {
-            // As local_plane() has it for the view's own origin.
+            // As local_plane() at the view's own origin.
             const double offset = view.planes[i].offset;
             std::copy_n(view.planes[i].normal_f, 3, planes[i].normal);
             planes[i].offset = static_cast<float>(offset);
@@ -325,7 +325,7 @@ class DirectQuery {
             list[count++] = base + static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero64(bits));
     }
 
-    // With the planes that they cross.
+    // With the planes that each of them crosses.
     HWY_INLINE void append_needing(std::uint64_t bits, std::uint32_t base) {
         for (; bits; bits &= bits - 1) {
             const auto i = static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero64(bits));
@@ -334,7 +334,7 @@ class DirectQuery {
         }
     }
 
-    // Boxes `first` on. Where there are fewer than lanes, the last ones are copied, and zeros follow.
+    // The boxes from `first` on. If there are fewer than lanes, the last ones are copied, and zeros follow.
     HWY_INLINE DirectLanes lanes_from(std::size_t first) {
         const unsigned char* bytes = in_.boxes + sizeof(Obb) * first;
         if (HWY_UNLIKELY(first + kLanes > in_.count)) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One view against boxes as the caller has them, in vectors: nothing is prepared and nothing kept.
+// One view against the caller's boxes, in vectors, without preparation or state.
 #pragma once
 #include "list/list_kernel.hpp"
 
@@ -15,7 +15,7 @@ struct DirectKernelInput {
     bool exact;
 };
 
-// Boxes that are not valid are among the undecided.
+// Invalid boxes are reported as undecided.
 void run_direct_kernel(const DirectKernelInput& input, ListKernelOutput& output);
 
 }  // namespace crofton::cull

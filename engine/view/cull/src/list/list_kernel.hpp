@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One view against a chunk of a list, in vectors: what a filter can decide, and the list of what it cannot.
+// One view against a chunk of a list, in vectors: the filter's verdicts, and the list of undecided bounds.
 #pragma once
 #include <crofton/cull/list_layout.hpp>
 

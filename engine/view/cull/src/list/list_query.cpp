@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Queries of lists: chunks through the kernels, and what those leave undecided.
+// Queries of lists: chunks go through the kernels, then undecided bounds through exact tests.
 #include <algorithm>
 #include <bit>
 #include <crofton/core/error.hpp>
@@ -104,10 +104,10 @@ void find_visible(const BoundSet<Bound>& set, std::type_identity_t<std::span<con
 
 namespace {
 
-// Ten megabytes of rows and records: larger lists are asked for ahead.
+// Ten megabytes of rows and records: larger lists are prefetched.
 constexpr std::size_t kCachedList = 262144;
 
-// The views of one pass, and a chunk at a time what they see of it.
+// The views of one pass, applied to one chunk at a time.
 template <class Bound>
 class ListViews {
   public:
@@ -120,7 +120,7 @@ class ListViews {
         }
     }
 
-    // `cost` is added to, by view.
+    // Adds to `cost`, by view.
     void run(std::size_t c, std::uint32_t* masks, Statistics* cost) const {
         const BoundSet<Bound>& set = query_.set;
         Chunk chunk{*this, c * kChunk, cost};

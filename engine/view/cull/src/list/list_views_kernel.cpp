@@ -80,7 +80,7 @@ class ChunkViews {
         std::uint32_t bit, layer_mask;
     };
 
-    // Sorts the views. A view that the whole chunk is outside of is dropped. Where rows can tell nothing, or need not,
+    // Sorts the views. A view that the whole chunk is outside of is dropped. If rows cannot decide, or need not,
     // all bounds are seen at first (whole_). For the others the rows are tested (asked_).
     void plan() {
         std::uint32_t useless = 0;

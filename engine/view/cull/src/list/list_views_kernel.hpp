@@ -25,7 +25,7 @@ struct ListViewsInput {
     bool exact;
     bool beyond_cache;            // the list is larger than what the cores' own caches hold
     const std::uint32_t* layers;  // of the chunk's bounds, or null: all are in all layers
-    // Decides what vectors cannot: does view v see bound i?
+    // The exact test for undecided bounds: does view v see bound i?
     bool (*decide)(void* context, std::uint32_t bound, std::uint32_t view);
     void* context;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Boxes that move in every frame, in a list beside the tree.
+// Boxes that move in every frame, kept in a list outside the tree.
 #include <hwy/cache_control.h>
 #include <algorithm>
 #include <crofton/boxtree/box_tree.hpp>

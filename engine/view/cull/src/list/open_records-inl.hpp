@@ -137,7 +137,7 @@ class OpenRecords {
     }
 
   private:
-    // Those that cross several planes are listed with them, so that the second stage's lanes are full.
+    // Boxes that cross several planes are listed with them, so that the second stage's lanes are full.
     OpenCounts test_own(std::uint32_t* indices, std::size_t count, std::uint32_t* needs_edge_test) {
         const DU du;
         const PlaneTable table(view_, planes_, local_);

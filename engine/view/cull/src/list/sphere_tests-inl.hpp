@@ -31,7 +31,7 @@ struct SphereRow {
     VF base, error_bound;
 };
 
-// Those of the wanted lanes that certainly have a point inside all planes. The search steps from the centre onto the
+// Returns the wanted lanes that certainly have a point inside all planes. The search steps from the centre onto the
 // plane that is missed by most, a little beyond it, again and again. 2^-16 covers the roundings of |v|² and of the
 // radius. Radii whose squares might overflow, or underflow to where floats lose digits, are left to exact arithmetic.
 HWY_INLINE MF has_witness(const SphereLanes& spheres, const SphereRow* rows, unsigned count, MF wanted) {
@@ -62,7 +62,7 @@ HWY_INLINE MF has_witness(const SphereLanes& spheres, const SphereRow* rows, uns
     }
 }
 
-// Those of the wanted lanes that two planes together certainly exclude: λ_a s_a + λ_b s_b + radius |λ_a n_a + λ_b n_b|
+// Returns the wanted lanes that two planes together certainly exclude: λ_a s_a + λ_b s_b + radius |λ_a n_a + λ_b n_b|
 // < 0 for some λ ≥ 0 (sphere.cpp). The square of the length rounds by less than 2^-20 (λ_a + λ_b)², the rest by less
 // than 2^-19 relative to each term. What underflow eats is far below 1e-30, and sums near overflow prove nothing.
 HWY_INLINE MF is_excluded(const SphereLanes& spheres, const SphereRow* rows, unsigned count, MF wanted) {

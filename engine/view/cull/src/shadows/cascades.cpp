@@ -13,7 +13,7 @@
 namespace crofton::cull {
 namespace {
 
-// A rectangle in the plane of two axes: `side` is the first one's direction in them.
+// A rectangle in the plane of two axes; `side` is the direction of its first side in these axes.
 struct TurnedRectangle {
     glm::dvec2 side{1.0, 0.0}, low{0.0}, high{0.0};
     [[nodiscard]] double area() const { return (high.x - low.x) * (high.y - low.y); }
@@ -92,7 +92,7 @@ Result<Camera> cascade_camera(const Camera& camera, double near, double far, con
     }
     const TurnedRectangle best = smallest_rectangle(points);
     const glm::dvec3 side = best.side.x * across + best.side.y * up, top = best.side.x * up - best.side.y * across;
-    // A trifle more than what is seen, so that its rounded planes contain it.
+    // Slightly larger than the visible part, so that its rounded planes contain it.
     const glm::dvec2 size = best.high - best.low, middle = best.low + 0.5 * size;
     const double trifle = 0x1p-30 * (glm::length((*corners)[7]) + size.x + size.y);
     light.up = top;

@@ -43,7 +43,7 @@ struct Rectangle2 {
     Interval side[2];
 };
 
-// The depths at which rays through the rectangle may be inside the body; none is left out.
+// A range that contains all depths at which rays through the rectangle may be inside the body.
 Interval depths(const FaceBody& body, const Rectangle2& tile, bool is_sun) {
     Interval result;
     if (!is_sun) result.low = 0.0;
@@ -100,7 +100,7 @@ class ReceiverPass {
   public:
     explicit ReceiverPass(const ShadowReceivers& set) : set_(set) {}
 
-    // The box's rectangle in a face's picture; all of it where the box reaches beside or behind the light.
+    // The box's rectangle in a face's picture; all of it if the box reaches level with or behind the light.
     [[nodiscard]] Rectangle2 rectangle_of(const Obb& box, const ShadowReceivers::Face& face) const {
         Rectangle2 result{{{kFar, -kFar}, {kFar, -kFar}}};
         for (const glm::dvec3& corner : corners(box)) {
@@ -131,7 +131,7 @@ class ReceiverPass {
         }
         return result;
     }
-    // Is the tile lit, and as near as `depth` within the light's range?
+    // Whether the tile is lit and `depth` is within the light's range.
     [[nodiscard]] bool is_in_range(const Rectangle2& tile, double depth) const {
         if (set_.is_sun_) return true;
         const double square = from_axis(tile) * (1.0 - kOutward);
@@ -178,7 +178,7 @@ class ReceiverPass {
         return visit_tiles(body, f, tiles, visit);
     }
 
-    // By halves, so that what the body does not meet costs little.
+    // Recurses by halves, so that tiles which the body does not meet cost little.
     template <class Visit>
     bool visit_tiles(const FaceBody& body, std::uint32_t f, Tiles tiles, const Visit& visit) const {
         if (tiles.first[0] >= tiles.last[0] || tiles.first[1] >= tiles.last[1]) return false;
@@ -242,7 +242,7 @@ class ReceiverPass {
         }
     }
 
-    // A trifle more than `picture`.
+    // Slightly larger than `picture`.
     static void set_picture(const ShadowReceivers& set, ShadowReceivers::Face& face, const Rectangle2& picture) {
         for (int k = 0; k < 2; ++k) {
             const Interval& side = picture.side[k];

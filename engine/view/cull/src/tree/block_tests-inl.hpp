@@ -88,7 +88,7 @@ HWY_INLINE NodeTest test_node(const KernelView& view, const PairPlane* normals, 
     return result;
 }
 
-// Those of `lanes` below which every item is in a layer that the view sees.
+// Returns those of `lanes` below which every item is in a layer that the view sees.
 HWY_INLINE std::uint32_t seen(const KernelView& view, const boxtree::Node& node, std::uint32_t lanes) {
     if (HWY_LIKELY(node.layers_every & view.layer_mask)) return lanes;
     std::uint32_t result = 0;

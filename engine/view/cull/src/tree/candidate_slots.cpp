@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// CullOptions::candidate_mask as bits of a tree's slots. By these, a query asks nothing of what is left out, and skips
-// nodes below which nothing is left.
+// CullOptions::candidate_mask as bits of a tree's slots. With them a query tests no item outside the mask, and skips
+// nodes without candidates.
 #include <algorithm>
 #include <bit>
 #include <crofton/boxtree/structure.hpp>
@@ -21,7 +21,7 @@ void for_each_candidate(std::span<const std::uint64_t> set, std::size_t items, c
     }
 }
 
-// std::popcount is a call of a table's where the build's own instruction set has none.
+// std::popcount calls a table-driven function on instruction sets without popcount.
 std::size_t bit_count(std::uint64_t bits) {
     bits -= bits >> 1 & 0x5555555555555555u;
     bits = (bits & 0x3333333333333333u) + (bits >> 2 & 0x3333333333333333u);

@@ -14,7 +14,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace crofton::cull::HWY_NAMESPACE {
 
-// How many entries behind the last one pad() writes.
+// How many entries pad() writes after the last one.
 constexpr std::size_t kOpenPadding = 8;
 
 // Children and the planes that they straddle.

@@ -21,9 +21,9 @@
 namespace crofton::cull {
 namespace {
 
-// Room behind each list: vector stores write past the end.
+// Room after each list: vector stores write past the end.
 constexpr std::size_t kPadding = boxtree::kWidth, kListPadding = 64;
-// A query of fewer items is over before another thread has woken.
+// A query of fewer items ends before another thread wakes up.
 constexpr std::size_t kParallelItems = 65536, kParallelBoxes = 16384;  // of a tree; of a list
 // A mark in an item's number; ids are below 2^30.
 constexpr std::uint32_t kInside = 0x80000000u;
@@ -164,7 +164,7 @@ std::uint64_t Query::wanted_bits(std::uint64_t visible, std::span<const Obb> box
     return result;
 }
 
-// Decides what the kernel left undecided of these boxes, and counts for the statistics.
+// Decides the boxes that the kernel left undecided, and counts for the statistics.
 void Query::decide(std::span<const Obb> boxes, ListKernelOutput& output, Statistics& statistics) const {
     std::size_t rejected = 0;
     for (std::size_t n = 0; n < output.undecided_count; ++n) {
@@ -194,7 +194,7 @@ void Query::finish(const std::uint64_t* seen, const std::uint64_t* marked, std::
         size = list_marked(seen, marked, words);
     } else {
         grow(visible_.straddling_, items + kListPadding);
-        // Lists all that are seen, then takes out those that straddle. The rest is inside, in ascending order.
+        // Lists all visible items, then removes those that straddle. The rest is inside, in ascending order.
         Vector<std::uint64_t>& bits = visible_.bits_;
         for (std::size_t w = 0; w < words; ++w) bits[w] &= ~marked[w];
         size = list_bits_kernel(bits.data(), words, visible_.ids_.data());
@@ -338,8 +338,8 @@ void Query::run_all(const boxtree::BoxTree& tree, Executor& executor) {
     finish(tree, inside, straddling, executor);
 }
 
-// Replaces the undecided slots by the items that are visible after all, with kInside where that is so. Of the others,
-// those that no plane rejects are improper.
+// Replaces the undecided slots by the items that are visible, with kInside set for those inside. The others that no
+// plane rejects count as false positives.
 std::size_t Query::decide(const boxtree::BoxTree& tree, TreeKernelOutput& output) {
     const std::span<const ItemId> slot_items = tree.structure().slot_items();
     const std::span<const Obb> boxes = tree.boxes();
@@ -361,7 +361,7 @@ std::size_t Query::decide(const boxtree::BoxTree& tree, TreeKernelOutput& output
     return kept;
 }
 
-// Appends them behind the items that the kernel decided, so that the order does not depend on the threads.
+// Appends them after the items that the kernel decided, so that the order does not depend on the threads.
 void Query::append_decided(const TreeKernelOutput& output, std::size_t kept, std::size_t& inside,
                            std::size_t& straddling) {
     for (std::size_t i = 0; i < kept; ++i) {

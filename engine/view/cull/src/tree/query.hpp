@@ -20,7 +20,7 @@ void set_lengths(KernelView& view);  // for spheres
 // For a tree: its planes in small integers as well.
 [[nodiscard]] KernelView kernel_view_of(const View& view);
 
-// The answer of a kernel that decides nothing.
+// The answer if the kernel decided nothing.
 void leave_all_undecided(std::size_t count, ListKernelOutput& output);
 
 // A tree whose boxes are where `move` takes them.
@@ -46,7 +46,7 @@ class Query {
     [[nodiscard]] bool is_for_kernels() const;
     [[nodiscard]] Obb placed(const Obb& box) const { return moved_ ? moved_->move(box) : box; }
     void run_all(const boxtree::BoxTree& tree, Executor& executor);
-    // As far as limits go.
+    // By the draw limits alone.
     [[nodiscard]] bool is_wanted(const Obb& box, ItemId item, std::uint32_t layers) {
         return options_.limits == nullptr ||
                is_within_limits(*options_.limits, box, item,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One view against a box tree, in vectors: what a filter can decide, and the list of what it cannot.
+// One view against a box tree, in vectors: the filter's verdicts, and the list of undecided items.
 #pragma once
 #include <crofton/boxtree/layout.hpp>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The way of one query through a tree. Included once per instruction set.
+// The traversal of a tree by one query. Included once per instruction set.
 #if defined(CROFTON_CULL_TREE_WALK) == defined(HWY_TARGET_TOGGLE)
 #ifdef CROFTON_CULL_TREE_WALK
 #undef CROFTON_CULL_TREE_WALK
@@ -24,10 +24,10 @@ namespace crofton::cull::HWY_NAMESPACE {
 
 // In an entry's planes: everything below is inside, and in a layer that the view sees.
 constexpr std::uint32_t kWhole = 1u << 31;
-// There too: something below may be beyond a draw limit.
+// Also in an entry's planes: something below may be beyond a draw limit.
 constexpr std::uint32_t kLimited = 1u << 30;
 
-// Goes from some entries down to the leaves.
+// Traverses the tree from some entries down to the leaves.
 template <class Limits, bool kCandidates = false>
 class Walk {
   public:
@@ -169,7 +169,7 @@ class Walk {
         many_plane_leaves_.append(leaves, straddled, hn::AndNot(once, of_leaves));
     }
 
-    // As integers: of an empty tree there is nothing to point to.
+    // Integers rather than pointers, because an empty tree has no elements.
     HWY_INLINE static void prefetch(const void* table, std::size_t from, std::size_t bytes) {
         const std::uintptr_t first = reinterpret_cast<std::uintptr_t>(table) + from;
         for (std::size_t at = 0; at < bytes; at += 64) hwy::Prefetch(reinterpret_cast<const char*>(first + at));
@@ -301,7 +301,7 @@ class Walk {
                 const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(rest);
                 planes[count++] = {&view.pair_planes[i], block_plane(view, i, leaf)};
             }
-            // Nearly all have two: then there is no loop.
+            // Nearly all have two, which need no loop.
             for (std::size_t l = 0; l < boxtree::kWidth; l += hn::Lanes(DU())) {
                 const MF lanes = present_candidates(id, leaf, l);
                 emit(id, l,

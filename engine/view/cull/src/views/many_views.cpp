@@ -28,7 +28,7 @@ class ManyViewsQuery {
     }
 
   private:
-    // Leaves room for `more` items.
+    // Reserves room for `more` items.
     void find_resting(MaskedVisibleSet& visible, std::size_t more) {
         const std::size_t leaves = tree_.leaves().size() + boxtree::kWidth;
         grow(visible.ids_, tree_.items().boxes().size() + more + boxtree::kWidth);

@@ -18,7 +18,7 @@ struct ManyViewsInput {
     const KernelView* views;
     std::uint32_t view_count;
     bool exact;
-    // Decides what vectors cannot: does view v see the item in this slot?
+    // The exact test for undecided items: does view v see the item in this slot?
     bool (*decide)(const void* context, std::uint32_t slot, std::uint32_t view);
     const void* context;
 };
@@ -28,8 +28,8 @@ struct ManyViewsOutput {
     void* masks;             // integers of mask_bytes
     std::size_t mask_bytes;  // 1, 2 or 4, with a bit for each view
     std::size_t count;
-    // For its own use. By leaf, with room for 16 more: the views that see it whole, and those that must look into it,
-    // all 0 and left so. For each view: the planes that the leaf straddles.
+    // Scratch memory of the kernel. By leaf, with room for 16 more: the views that see it whole, and those that must
+    // look into it, all 0 and left so. For each view: the planes that the leaf straddles.
     std::uint32_t* whole;
     std::uint32_t* open;
     std::uint16_t* planes;

@@ -26,7 +26,7 @@ HWY_INLINE VF dot_of(const VF* a, const VF* b) {
     return hn::Add(hn::Add(hn::Mul(a[0], b[0]), hn::Mul(a[1], b[1])), hn::Mul(a[2], b[2]));
 }
 
-// How long the ray along `along`, of length `length`, is in the bounds from the point on.
+// Returns the length of the ray from the point along `along` (of length `length`) that lies within the bounds.
 HWY_INLINE VF way_behind(const VF* point, const VF* along, VF length, const ChooseView& view) {
     const DF d;
     VF end = hn::Set(d, 1e30f), begin = hn::Zero(d);
@@ -75,7 +75,7 @@ HWY_INLINE Worth worth_of(const float* const* columns, std::size_t i, const Choo
     const VF radius_square = hn::Mul(radius, radius);
     auto large = hn::Gt(radius_square, hn::Set(d, view.large_square));
     if (view.perspective) {
-        // Nearer than half the radius the quotient means nothing.
+        // For distances below half the radius the quotient is meaningless.
         const VF near = hn::Mul(radius_square, hn::Set(d, 0.25f));
         large = hn::Gt(radius_square, hn::Mul(dot_of(center, center), hn::Set(d, 0.0625f)));
         const VF square = hn::Max(hn::Max(dot_of(center, center), near), hn::Set(d, 1e-30f));

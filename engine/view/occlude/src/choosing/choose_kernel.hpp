@@ -21,7 +21,7 @@ struct ChooseView {
 };
 
 // Writes the ids of those in view that cover at least `least` to `seen`. `values` gets what they cover, times the way
-// behind them where that is bounded. Where one ray does not tell, of those that look large or have nothing behind their
+// behind them where that is bounded. If one ray does not decide, of those that look large or have nothing behind their
 // centers, it gets what they cover with a minus sign. Both have room for all. Returns their number. Same bits for any
 // instruction set.
 std::size_t measure_cover(const float* const* columns, std::size_t count, const ChooseView& view, std::uint32_t* seen,

@@ -56,7 +56,7 @@ std::uint64_t key_of(float worth, std::uint32_t id) {
     return std::uint64_t{~std::bit_cast<std::uint32_t>(worth)} << 32 | id;
 }
 
-// Nearest to `p` of the box.
+// The point of the box that is nearest to `p`.
 glm::dvec3 nearest_in(const Aabb& box, const glm::dvec3& p) {
     return glm::clamp(p, box.min, box.max);
 }
@@ -68,7 +68,7 @@ EyeLimits limits_of(const FoundOccluder& found, const Transform& transform) {
         limits.left_out_within.include(transform * glm::dvec3((i & 1u) ? piece.max.x : piece.min.x,
                                                               (i & 2u) ? piece.max.y : piece.min.y,
                                                               (i & 4u) ? piece.max.z : piece.min.z));
-    // Four roundings of numbers of these sizes.
+    // Covers four roundings of numbers of these sizes.
     glm::dvec3 error_bound = glm::abs(transform.translation);
     for (int k = 0; k < 3; ++k)
         error_bound += glm::abs(transform.linear[k]) * std::max(std::abs(piece.min[k]), std::abs(piece.max[k]));
@@ -141,12 +141,12 @@ void set_areas_of_surface(const FoundOccluder& found, const Transform& transform
         for (int k = 0; k < 3; ++k) result.areas[static_cast<std::size_t>(k)][k] = static_cast<float>(area / 6.0);
         return;
     }
-    // A reflection turns the winding round, and what is drawn with it.
+    // A reflection reverses the winding, and with it the sides that are drawn.
     if (sign_of_determinant(transform.linear) < 0) normals = -normals;
     const double mean = glm::length(normals);
     if (mean >= 0.9 * area) {
         result.areas[0] = glm::vec3(normals);
-        // Parts that are turned away from the others are seen from behind them.
+        // Parts that face away from the others are visible from behind those.
         result.front_only = found.sides == Sides::front && mean >= 0.999 * area;
         return;
     }

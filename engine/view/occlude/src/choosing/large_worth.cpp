@@ -17,7 +17,7 @@ glm::dvec3 row_direction(const std::array<double, 4>& row) {
     return {row[0], row[1], row[2]};
 }
 
-// Where a ray is in a box, in multiples of its direction.
+// The part of a ray within a box, in multiples of the ray's direction.
 struct Stretch {
     double begin, end;
 };
@@ -33,7 +33,7 @@ Stretch stretch_in(const Aabb& box, const glm::dvec3& start, const glm::dvec3& a
     return result;
 }
 
-// Σ |dot(along, areas)|: what is seen of the occluder, and of its bounds.
+// Σ |dot(along, areas)|: the visible areas of the occluder and of its bounds.
 double faced_of(const OccluderCandidates& candidates, std::uint32_t id, const glm::dvec3& along) {
     double faced = 0.0;
     for (std::size_t a = 0; a < 3; ++a) {

@@ -10,7 +10,7 @@ namespace crofton::occlude {
 
 class LargeWorth {
   public:
-    // `objects`: where those are that may be hidden.
+    // `objects`: bounds of the objects that may be hidden.
     LargeWorth(const OcclusionView& view, const Aabb& objects, const glm::dvec3& candidates_origin);
 
     // As the kernel's worth: the share of all directions that the candidate covers, times the way behind it through the

@@ -43,7 +43,8 @@ Result<double> occlusion_worth(std::span<const glm::dvec3> points, const SeenSce
     for (std::uint32_t k = 0; k < scene.samples; ++k) {
         const glm::dvec3 at(halton(k, 2), halton(k, 3), halton(k, 5));
         const glm::dvec3 eye = scene.eyes.min + at * (scene.eyes.max - scene.eyes.min);
-        // Scaled until its farthest corner is at the range: what the others' rays reach beyond is left out.
+        // Scales the shadow until its farthest corner is at the range. The part that other corners' rays reach beyond
+        // is ignored.
         double farthest = 0.0;
         for (const glm::dvec3& p : body) farthest = std::max(farthest, glm::distance(p, eye));
         if (!(farthest > 0.0) || farthest >= scene.range) continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Bodies in closed pieces: the piece itself, or boxes.
+// Finds bodies in closed pieces: the piece itself, or boxes.
 #include <algorithm>
 #include <cmath>
 #include <crofton/fit/fit.hpp>
@@ -27,7 +27,7 @@ Vector<std::uint32_t> vertices_of(const PieceMesh& mesh, const Piece& piece) {
     return vertices;
 }
 
-// Exactly: no vertex lies before a face (sign > 0) or behind one (sign < 0).
+// Whether no vertex lies in front of a face (sign > 0) or behind one (sign < 0), decided exactly.
 bool is_on_one_side(const PieceMesh& mesh, const Piece& piece, std::span<const std::uint32_t> vertices, int sign) {
     for (const std::uint32_t index : mesh.of(piece)) {
         const Triangle t = mesh.corners(index);
@@ -200,7 +200,7 @@ bool add_convex_piece(const Search& search, const Piece& piece, Vector<FoundOccl
     for (const std::uint32_t v : vertices)
         middle += glm::dvec3(mesh.positions[v]) / static_cast<double>(vertices.size());
     const Vector<Triangle> triangles = triangles_of(mesh, piece);
-    // Rounding may put the middle of a thin piece onto its surface; then it is no body worth having.
+    // Rounding may put the middle of a thin piece onto its surface; such a body is not worth having.
     for (const Triangle& t : triangles)
         if (glm::dot(normal_of(t), normal_of(t)) > 0.0 && orientation(t[0], t[1], t[2], middle) == 0) return false;
     if (winding_around(mesh, piece, middle).number != (outward ? 1 : -1)) return false;

@@ -57,7 +57,7 @@ bool has_eye_limits(const FoundOccluder& occluder) {
     return occluder.eyes_within.min != all.min || occluder.eyes_within.max != all.max;
 }
 
-// Greedy: what is in shadow already counts no more. Of equals the first.
+// Chooses greedily: area already in shadow no longer counts. The first of equals wins.
 void choose(const Search& search, const ShadowCaster& caster, Vector<FoundOccluder>& candidates,
             FoundOccluders& result) {
     Vector<ShadowBits> shadows(candidates.size());
@@ -74,7 +74,7 @@ void choose(const Search& search, const ShadowCaster& caster, Vector<FoundOcclud
         for (std::size_t i = 0; i < candidates.size(); ++i) {
             if (open[i] == 0 || candidates[i].edges > edges_left) continue;
             const double cost = candidates[i].edges + kEdgesOfSetup;
-            // Gains only fall, so the last one known is a bound.
+            // Gains only decrease, so the last known gain is an upper bound.
             if (candidates[i].gain / cost <= best) continue;
             const double gain = candidates[i].gain = caster.mean_area_beyond(shadows[i], covered);
             if (gain < search.least_shadow || !(gain > 0.0)) {

@@ -52,7 +52,7 @@ struct FrameBox {
 // the mean shadow goes first.
 void push_faces(const FramedPiece& piece, FrameBox& box);
 
-// As it is stored, and the hull of its corners rounded to float.
+// The box as stored, and the hull of its corners rounded to float.
 struct StoredBox {
     Obb box;
     std::array<glm::vec3, 8> corners;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Levels: many small pieces that meet along walls. Their sides are cut to each other, then neighbours are one surface.
+// Levels are many small pieces that meet along walls. Cuts their sides to each other, then joins neighbours to one
+// surface.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -33,7 +34,7 @@ class LevelDivision {
         return sum;
     }
 
-    // In halves across the longest axis of the middles.
+    // Splits recursively in halves across the longest axis of the centres.
     void divide(std::span<std::uint32_t> triangles, Vector<FoundOccluder>& found) const {
         if (triangles.empty()) return;
         if (triangles.size() <= options_.level_triangles) return add(triangles, found);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Flat parts of the surface: triangles that share sides, face the same way and lie near one plane.
+// Finds flat parts of the surface: triangles that share sides, face the same way and lie near one plane.
 #include <algorithm>
 #include <glm/geometric.hpp>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The pieces of a mesh: triangles that hang together by sides, where vertices of equal position are one.
+// The pieces of a mesh: triangles connected by sides, where vertices of equal position count as one.
 #pragma once
 #include <array>
 #include <crofton/core/memory.hpp>
@@ -43,8 +43,8 @@ struct PieceMesh {
 // Requires an index count that is a multiple of three, and fewer than 2^28 triangles.
 [[nodiscard]] PieceMesh split_into_pieces(const TriangleMesh& mesh);
 
-// How often the surface winds round the point, and the parity of its crossings; decided exactly. The sum of signs of
-// the crossings of the ray along +z; no triangle contains the point.
+// The winding number of the surface around the point, and the parity of its crossings; decided exactly. The sum of
+// signs of the crossings of the ray along +z; no triangle contains the point.
 struct Winding {
     int number = 0;
     bool odd = false;

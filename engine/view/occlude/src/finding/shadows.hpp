@@ -16,7 +16,7 @@ namespace crofton::occlude {
 inline constexpr std::size_t kShadowAxes = 15;
 inline constexpr std::size_t kShadowRows = 64;
 
-// Bit x of row y: the cell's centre is in the shadow. Per axis what is seen from its positive, then its negative end.
+// Bit x of row y: the cell's centre is in the shadow. For each axis as seen from its positive, then its negative end.
 struct ShadowBits {
     std::array<std::uint64_t, 2 * kShadowAxes * kShadowRows> rows{};
 };

@@ -59,7 +59,7 @@ std::uint32_t SolidGrid::cell_at(int axis, double coordinate) const {
 }
 
 void SolidGrid::fill_inside(const FramedPiece& piece, Sides sides) {
-    // By row and cell: what the crossings right after the cell's centre add to the winding of all before them.
+    // By row and cell: the change of the winding number by crossings right after the cell's centre.
     Vector<std::int32_t> steps(std::size_t{n_} * n_ * (n_ + 1), 0);
     for (const Triangle& t : piece.triangles) {
         const glm::dvec3 low = glm::min(t[0], glm::min(t[1], t[2])), high = glm::max(t[0], glm::max(t[1], t[2]));

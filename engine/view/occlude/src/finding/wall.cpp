@@ -52,7 +52,7 @@ std::array<float, 2> ends_along(const Stretch& s, float low, float high, int axi
     return {fixed, fixed};
 }
 
-// Triangles that belong together: across sides that cancel.
+// Groups of triangles that are connected across sides that cancel.
 class Groups {
   public:
     explicit Groups(std::size_t count) : parent_(count), open_(count, 0) {
@@ -193,7 +193,7 @@ int WallTest::degree() {
 
 bool WallTest::run() {
     collect_boundaries();
-    // Groups that are open along a part, but cancel there together, belong together.
+    // Joins groups that are open along a part, but cancel there together.
     for_each_part([&](const Vector<Stretch>& over) {
         int sum = 0;
         for (const Stretch& s : over) sum += sides_ == Sides::front ? s.sign : 1;

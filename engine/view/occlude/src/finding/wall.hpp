@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Whether a part of a mesh closes the face of a box, recesses and all.
+// Whether a part of a mesh closes the face of a box, including its recesses.
 #pragma once
 #include <array>
 #include <crofton/geometry/mesh.hpp>
@@ -9,7 +9,7 @@
 
 namespace crofton::occlude {
 
-// An axis-aligned box in the mesh's frame; its numbers are taken as they are.
+// An axis-aligned box in the mesh's frame; its numbers are exact.
 struct WallBox {
     glm::vec3 low{0.0f}, high{0.0f};
 };
@@ -19,9 +19,9 @@ struct WallBox {
     return (face % 2 == 0 ? box.high : box.low)[static_cast<int>(face / 2)];
 }
 
-// Whether each straight path that enters the box through the inner part of the face, and goes on in the box to `inner`
-// beyond, meets a triangle that lies between the face and `inner`. With Sides::front: one whose front it meets. Decided
-// exactly (docs/notes/occluder_finding.md, "Walls"); false where the proof does not apply.
+// Whether each straight path that enters the box through the inner part of the face, and continues in the box to
+// `inner` beyond, meets a triangle that lies between the face and `inner`. With Sides::front: one whose front it meets.
+// Decided exactly (docs/notes/occluder_finding.md, "Walls"); false where the proof does not apply.
 [[nodiscard]] bool is_walled(const PieceMesh& mesh, Sides sides, const WallBox& box, std::size_t face, float inner);
 
 }  // namespace crofton::occlude

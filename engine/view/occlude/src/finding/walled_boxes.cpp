@@ -121,7 +121,7 @@ struct WalledBox {
         const glm::dvec3 e = glm::dvec3(inner.high) - glm::dvec3(inner.low);
         return 0.5 * (e.x * e.y + e.y * e.z + e.z * e.x);
     }
-    // Open sides keep eyes out, and make it worth less.
+    // Eyes beyond an open side cannot use the body, so open sides make it worth less.
     [[nodiscard]] double worth() const { return walls < kLeastWalls ? 0.0 : mean_shadow() * (walls - 3.0); }
 };
 

@@ -99,8 +99,8 @@ struct BakeOptions {
     boxtree::Orientation tree = boxtree::Orientation::aligned;
     const BakedOccluders* occluders = nullptr;  // nullptr: the file has none
     std::span<const MeshLook> looks{};          // by mesh; meshes beyond the end have the default look
-    // Cuts each mesh into clusters (depth::ClusteredMesh), so that whoever opens the file need not. The file then has
-    // about as many bytes of clusters as of positions and indices.
+    // Cuts each mesh into clusters (depth::ClusteredMesh), so that the program that opens it need not. The file then
+    // has about as many bytes of clusters as of positions and indices.
     bool clusters = true;
 };
 
@@ -145,7 +145,7 @@ class BakedScene {
     [[nodiscard]] std::span<const InstanceRecord> instances() const { return instances_; }
     [[nodiscard]] std::span<const NodeRecord> nodes() const { return nodes_; }
     // Returns the occluders, or none if the file was baked without them; they can then be found again. Each number is
-    // copied from the file and checked. Whoever baked the file must know that the occluders lie within the meshes.
+    // copied from the file and checked. Occluders are not checked to lie within the meshes; the baker must ensure it.
     [[nodiscard]] const std::optional<BakedOccluders>& occluders() const { return occluders_; }
     // Returns the mesh's clusters; nullptr if it was baked without. They are copied from the file and checked, except
     // that their boxes are not compared with the triangles.

@@ -25,8 +25,8 @@ static_assert(sizeof(OccluderRecord) == 216 && sizeof(OccludingNode) == 8);
 
 // Errors: those of read_occluders, so that what has been written can be read.
 [[nodiscard]] Result<void> add_occluders(const BakedOccluders& occluders, std::size_t node_count, Writer& writer);
-// None where the file has no such sections. Errors: what is out of its range, no number or no box, with the occluder,
-// kind or place among the nodes as item.
+// Returns no occluders if the file has no such sections. Errors: what is out of its range, no number or no box, with
+// the occluder, kind or place among the nodes as item.
 [[nodiscard]] Result<std::optional<BakedOccluders>> read_occluders(const Reader& reader, std::size_t node_count);
 
 }  // namespace crofton::bake

@@ -22,7 +22,7 @@ class Recovery {
 
 // The operation's result, or ErrorCode::out_of_memory. What the operation had built is destroyed by then. An object
 // that it changes must be changed by steps that cannot fail, after all that can. Within another operation it throws on
-// to that one's: nothing goes on with half of what it asked for.
+// to that one's: no operation continues with half of the memory it asked for.
 template <class Operation>
 [[nodiscard]] auto recover(Operation&& operation) -> decltype(operation()) {
     const Recovery recovery;

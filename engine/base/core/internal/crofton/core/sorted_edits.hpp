@@ -110,7 +110,7 @@ class LazySortedList {
         std::size_t number;
         bool is_added;
     };
-    // Edits of one value take turns: the first and the last tell what has come of it.
+    // Edits of one value alternate: the first and the last give the result.
     void apply() const {
         const IsBefore is_before;
         std::sort(edits_.begin(), edits_.end(), [&](const Edit& a, const Edit& b) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Whether two boxes are the same, bit for bit: what tells a box that has moved from one that was only set again.
+// Whether two boxes are the same, bit for bit: distinguishes a box that has moved from one that was set to the same
+// value.
 #pragma once
 #include <crofton/geometry/box.hpp>
 #include <cstddef>

@@ -126,7 +126,7 @@ struct PlanarMotion {
 
 // Returns the motion-invariant measure of the undirected lines that meet a convex body of this surface area: π·area/2.
 //
-// Of N uniform lines through a convex body A, N·F_B/F_A meet a convex B inside it on average. They cross a surface of
+// N·F_B/F_A of N uniform lines through a convex body A meet a convex B inside it on average. They cross a surface of
 // area S inside it 2·N·S/F_A times on average, which is N·S/(2πR²) for a sphere.
 [[nodiscard]] double measure_of_lines(double surface_area);
 

@@ -124,7 +124,7 @@ static_assert(sizeof(Node) == 448 && sizeof(Leaf) == 512);
 // A range of radii of items (radius_range.hpp).
 using RadiusRange = std::uint32_t;
 
-// The radii of the items below each child of a node, beside it.
+// The radii of the items below each child of a node, in an array parallel to the nodes.
 struct alignas(64) NodeRadii {
     RadiusRange below[kWidth];
 };

@@ -56,7 +56,7 @@ class Structure {
     void bound_nodes(NodeId begin, NodeId end);
     void reset_marks() { marks_.reset(leaves_.size()); }
 
-    // The same in steps. Each goes on from where the last one of its kind ended.
+    // The same in steps. Each continues where the last one of its kind ended.
     void begin_steps(const Topology& topology);
     void add_items(ItemId end);
     void add_nodes(NodeId end, const Topology& topology);

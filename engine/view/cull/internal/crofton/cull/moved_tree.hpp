@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Queries of trees whose boxes are stored relative to an origin: one view, many trees.
+// One view against many trees whose boxes are stored relative to an origin.
 #pragma once
 #include <crofton/core/memory.hpp>
 #include <crofton/cull/cull.hpp>
@@ -13,12 +13,12 @@ class MovedTreesQuery {
     MovedTreesQuery();
     ~MovedTreesQuery();
 
-    // Begins with a view, which must live until the last question.
+    // The view must outlive all queries.
     void start(const View& view);
 
     static constexpr std::uint32_t kAllPlanes = ~std::uint32_t{0};
-    // Returns the planes that the box is not certainly inside of: bit i is plane i. 0: the view contains the box.
-    // kAllPlanes, if the view is not one that filters can take.
+    // Returns the planes that the box may cross or lie outside of, bit i for plane i. 0: the view contains the box.
+    // Returns kAllPlanes for a view that filters cannot handle.
     [[nodiscard]] std::uint32_t planes_that_may_cut(const Obb& box) const;
 
     // As find_visible() of a tree, with each box moved: exact for the moved boxes. Requires that all of them are inside
