@@ -26,10 +26,31 @@ struct AgedTree {
           places(crowd.boxes.size(), Place::in_tree),
           spread(spread_of_new) {}
 
+    enum class Sizes : std::uint8_t { usual, any } sizes = Sizes::usual;  // of new boxes
+
     [[nodiscard]] bool holds(std::size_t item) const { return places[item] == Place::in_tree; }
 
+    // 0 for items that are in no leaf.
+    [[nodiscard]] std::vector<std::uint32_t> layers_in_tree() const {
+        std::vector<std::uint32_t> result = layers;
+        for (std::size_t i = 0; i < result.size(); ++i)
+            if (!holds(i)) result[i] = 0;
+        return result;
+    }
+
+    // One in ten is a point, enormous, tiny or far away where the sizes may be any.
+    Obb new_box(NearMisses& random, const glm::dvec3& middle) const {
+        Obb box = random_box(random, middle, spread);
+        if (sizes == Sizes::usual) return box;
+        const unsigned kind = random.index(40);
+        const float factors[] = {0.0f, 1e20f, 1e-38f};
+        if (kind < 3) box.half_extents *= factors[kind];
+        if (kind == 3) box.center *= 1e18;
+        return box;
+    }
+
     void insert(NearMisses& random, const glm::dvec3& middle) {
-        const Obb box = random_box(random, middle, spread);
+        const Obb box = new_box(random, middle);
         const std::uint32_t mask = 1u << random.index(4) | 1u << random.index(4);
         const auto item = tree.insert(box, mask);
         REQUIRE(item.has_value());
@@ -52,7 +73,7 @@ struct AgedTree {
             }
             const boxtree::ItemId item = random.index(static_cast<unsigned>(boxes.size()));
             if (places[item] == Place::gone) continue;
-            const Obb box = random_box(random, middle, spread);
+            const Obb box = new_box(random, middle);
             if (kind == 2) {
                 REQUIRE(tree.remove(item).has_value());
                 places[item] = Place::gone;

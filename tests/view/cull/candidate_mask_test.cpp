@@ -9,6 +9,7 @@
 #include <oracle/aged_tree.hpp>
 
 #include "../../ranges.hpp"
+#include "classified.hpp"
 
 using namespace crofton;
 using cull::ResultOrder;
@@ -129,23 +130,15 @@ TEST_SUITE("cull/among") {
             camera.far_distance = random.number(1.0, 9.0);
             const Frustum frustum = *frustum_of(camera);
             const bool among = random.index(2) != 0;
-            std::vector<cull::ItemId> ids;
-            std::vector<cull::Verdict> verdicts;
-            for (cull::ItemId i = 0; i < boxes.size(); ++i) {
-                const cull::Verdict verdict = cull::classify(frustum, boxes[i]);
-                if (verdict == cull::Verdict::outside || (among && !cull::is_candidate(set, i))) continue;
-                ids.push_back(i);
-                verdicts.push_back(verdict);
-                straddling += verdict == cull::Verdict::straddling;
-            }
+            std::vector<std::uint32_t> layers(boxes.size());
+            for (cull::ItemId i = 0; i < boxes.size(); ++i) layers[i] = !among || cull::is_candidate(set, i) ? 1u : 0u;
+            const testing::Classified expected(boxes, layers, {frustum});
+            straddling += expected.ids.size() - expected.inside_count();
             cull::CullOptions options;
             if (among) options.candidate_mask = set;
             cull::find_visible(tree, cull::View{frustum}, seen, options);
-            REQUIRE(test::ranges::equal(seen.ids(), ids));
-            REQUIRE(test::ranges::equal(seen.verdicts(), verdicts));
-            REQUIRE(seen.inside_count() ==
-                    static_cast<std::size_t>(std::count(verdicts.begin(), verdicts.end(), cull::Verdict::inside)));
-            few += ids.size() > 1 && ids.size() < 19;
+            REQUIRE(expected.is_answer(seen));
+            few += expected.ids.size() > 1 && expected.ids.size() < 19;
         }
         CHECK(few > 5);
         CHECK(few < 50);

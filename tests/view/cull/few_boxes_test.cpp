@@ -2,32 +2,20 @@
 // Few boxes about bodies of one to twelve planes, which wedges, slabs and repeated planes are among. Every list path
 // must give classify's verdict. edge_test.cpp compares that with exact arithmetic.
 #include <doctest/doctest.h>
-#include <hwy/targets.h>
 #include <algorithm>
-#include <bit>
 #include <crofton/cull/bound_set.hpp>
 #include <crofton/cull/cull.hpp>
 #include <oracle/near_misses.hpp>
 #include <vector>
 
+#include "classified.hpp"
+
 using namespace crofton;
 using cull::CullMode;
 using cull::Verdict;
+using testing::TargetInTurn;
 
 namespace {
-
-class FewBoxesTarget {
-  public:
-    explicit FewBoxesTarget(int trial) {
-        const std::int64_t all = hwy::SupportedTargets();
-        std::int64_t rest = all;
-        for (int i = trial % std::popcount(static_cast<std::uint64_t>(all)); i > 0; --i) rest &= rest - 1;
-        hwy::SetSupportedTargetsForTest(rest & -rest);
-    }
-    FewBoxesTarget(const FewBoxesTarget&) = delete;
-    FewBoxesTarget& operator=(const FewBoxesTarget&) = delete;
-    ~FewBoxesTarget() { hwy::SetSupportedTargetsForTest(0); }
-};
 
 // Up to twelve planes at distances of about 1 from the origin, some of them opposed, repeated, or nearly so.
 Frustum body_of_planes(oracle::NearMisses& random, std::uint32_t planes, double far) {
@@ -77,19 +65,11 @@ void check_verdicts(const std::vector<Obb>& boxes, const cull::View& view, CullM
     set.assign(boxes);
     cull::VerdictBits bits;
     cull::find_visible(set, boxes, view, bits, mode);
+    for (std::size_t i = 0; i < boxes.size(); ++i)
+        REQUIRE(bits.verdict(i) == cull::classify(view.frustum, boxes[i], mode));
     cull::VisibleSet visible;
     cull::find_visible(boxes, {}, view, visible, {mode});
-    std::size_t next = 0;
-    for (std::size_t i = 0; i < boxes.size(); ++i) {
-        const Verdict expected = cull::classify(view.frustum, boxes[i], mode);
-        CAPTURE(i);
-        REQUIRE(bits.verdict(i) == expected);
-        if (expected == Verdict::outside) continue;
-        REQUIRE(next < visible.size());
-        REQUIRE(visible.ids()[next] == i);
-        REQUIRE(visible.verdicts()[next++] == expected);
-    }
-    REQUIRE(next == visible.size());
+    REQUIRE(testing::Classified(boxes, {}, view, mode).is_answer(visible));
 }
 
 }  // namespace
@@ -99,7 +79,7 @@ TEST_SUITE("cull/few boxes") {
         oracle::NearMisses random(41);
         int outside = 0, tested = 0;
         for (int trial = 0; trial < 3000; ++trial) {
-            const FewBoxesTarget target(trial / 12);
+            const TargetInTurn target(trial / 12);
             const Frustum body =
                 body_of_planes(random, 1 + static_cast<std::uint32_t>(trial % 12), trial % 5 ? 1.0 : 1e6);
             const std::size_t counts[] = {3, 20, 64, 65, 255, 257};
@@ -117,7 +97,7 @@ TEST_SUITE("cull/few boxes") {
         oracle::NearMisses random(42);
         int crossed = 0;
         for (int trial = 0; trial < 3000; ++trial) {
-            const FewBoxesTarget target(trial);
+            const TargetInTurn target(trial);
             const Frustum body = body_of_planes(random, 1 + random.index(7), 1.0);
             const Plane plane = body.planes[0];
             // A cluster whose farthest corner is at the plane, inside of it, to some thousandths.

@@ -2,9 +2,7 @@
 // Clusters of boxes of which each lies within a filter's rounding of a plane: what the kernels decide in floats and
 // small integers must be classify's verdict, which edge_test.cpp compares with exact arithmetic.
 #include <doctest/doctest.h>
-#include <hwy/targets.h>
 #include <algorithm>
-#include <bit>
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/cull/bound_set.hpp>
 #include <crofton/cull/cull.hpp>
@@ -13,11 +11,13 @@
 #include <oracle/near_misses.hpp>
 #include <vector>
 
-#include "../../ranges.hpp"
+#include "classified.hpp"
 
 using namespace crofton;
 using cull::CullMode;
 using cull::Verdict;
+using testing::Classified;
+using testing::TargetInTurn;
 
 namespace {
 
@@ -102,41 +102,6 @@ std::vector<Obb> cluster_across_edge(oracle::NearMisses& random, const Frustum& 
     return boxes;
 }
 
-// Every instruction set that this processor has, trial by trial in turn.
-class TargetInTurn {
-  public:
-    explicit TargetInTurn(int trial) {
-        const std::int64_t all = hwy::SupportedTargets();
-        std::int64_t rest = all;
-        for (int i = trial % std::popcount(static_cast<std::uint64_t>(all)); i > 0; --i) rest &= rest - 1;
-        hwy::SetSupportedTargetsForTest(rest & -rest);
-    }
-    TargetInTurn(const TargetInTurn&) = delete;
-    TargetInTurn& operator=(const TargetInTurn&) = delete;
-    ~TargetInTurn() { hwy::SetSupportedTargetsForTest(0); }
-};
-
-struct Answer {
-    std::vector<cull::ItemId> ids;
-    std::vector<Verdict> verdicts;
-};
-
-Answer expected_of(const std::vector<Obb>& boxes, const cull::View& view, CullMode mode) {
-    Answer answer;
-    for (std::size_t i = 0; i < boxes.size(); ++i) {
-        const Verdict verdict = cull::classify(view.frustum, boxes[i], mode);
-        if (verdict == Verdict::outside) continue;
-        answer.ids.push_back(static_cast<cull::ItemId>(i));
-        answer.verdicts.push_back(verdict);
-    }
-    return answer;
-}
-
-bool is_answer(const cull::VisibleSet& visible, const Answer& expected) {
-    return test::ranges::equal(visible.ids(), expected.ids) &&
-           test::ranges::equal(visible.verdicts(), expected.verdicts);
-}
-
 template <class Bound>
 void check_set(const std::vector<Bound>& bounds, const cull::View& view, CullMode mode) {
     cull::BoundSet<Bound> set;
@@ -155,7 +120,7 @@ void check_lists(const std::vector<Obb>& boxes, const cull::View& view) {
     cull::VisibleSet visible;
     for (const CullMode mode : {CullMode::exact, CullMode::conservative}) {
         cull::find_visible(boxes, {}, view, visible, {mode});
-        REQUIRE(is_answer(visible, expected_of(boxes, view, mode)));
+        REQUIRE(Classified(boxes, {}, view, mode).is_answer(visible));
         check_set(boxes, view, mode);
         check_set(bounds, view, mode);
         check_set(spheres, view, mode);
@@ -171,14 +136,12 @@ std::uint64_t check_tree(const std::vector<Obb>& boxes, const cull::View& view) 
     cull::VisibleSet visible;
     cull::MaskedVisibleSet many;
     for (const CullMode mode : {CullMode::exact, CullMode::conservative}) {
-        const Answer expected = expected_of(boxes, view, mode);
+        const Classified expected(boxes, {}, view, mode);
         cull::find_visible(*tree, view, visible, {mode});
-        REQUIRE(is_answer(visible, expected));
+        REQUIRE(expected.is_answer(visible));
         exact_tests += visible.statistics().exact_tests;
         (void)cull::find_visible(*tree, views, many, mode);
-        std::vector<cull::ItemId> ids(many.ids().begin(), many.ids().end());
-        test::ranges::sort(ids);
-        REQUIRE(ids == expected.ids);
+        REQUIRE(expected.are_ids(many.ids()));
     }
     return exact_tests;
 }

@@ -11,11 +11,12 @@
 #include <oracle/turned_crowd.hpp>
 
 #include "../../ranges.hpp"
+#include "classified.hpp"
 
 using namespace crofton;
 using boxtree::Orientation;
 using cull::CullMode;
-using cull::Verdict;
+using testing::Classified;
 
 namespace {
 
@@ -26,26 +27,6 @@ cull::View view_near(oracle::NearMisses& random, const glm::dvec3& middle, doubl
     camera.far_distance = camera.near_distance + spread * random.number(0.1, 4.0);
     return {*frustum_of(camera), trial % 4 < 2 ? 1u << random.index(4) : ~0u};
 }
-
-std::vector<cull::ItemId> sorted(std::span<const cull::ItemId> ids) {
-    std::vector<cull::ItemId> result(ids.begin(), ids.end());
-    test::ranges::sort(result);
-    return result;
-}
-
-struct Expected {
-    std::vector<cull::ItemId> ids;
-    std::vector<Verdict> verdicts;
-
-    Expected(std::span<const Obb> boxes, std::span<const std::uint32_t> layers, const cull::View& view, CullMode mode) {
-        for (std::size_t i = 0; i < boxes.size(); ++i) {
-            const Verdict verdict = cull::classify(view.frustum, boxes[i], mode);
-            if (verdict == Verdict::outside || !(layers[i] & view.layer_mask)) continue;
-            ids.push_back(static_cast<cull::ItemId>(i));
-            verdicts.push_back(verdict);
-        }
-    }
-};
 
 }  // namespace
 
@@ -63,18 +44,14 @@ TEST_SUITE("cull/oriented trees") {
                 for (int trial = 0; trial < 40; ++trial) {
                     const cull::View view = view_near(random, middle, spread, trial);
                     const CullMode mode = trial % 2 ? CullMode::exact : CullMode::conservative;
-                    const Expected expected(crowd.boxes, crowd.layers, view, mode);
+                    const Classified expected(crowd.boxes, crowd.layers, view, mode);
                     cull::VisibleSet visible;
                     cull::find_visible(tree, view, visible, {mode});
-                    REQUIRE(test::ranges::equal(visible.ids(), expected.ids));
-                    REQUIRE(test::ranges::equal(visible.verdicts(), expected.verdicts));
+                    REQUIRE(expected.is_answer(visible));
                     const std::vector<cull::View> views{view, view_near(random, middle, spread, trial)};
                     cull::MaskedVisibleSet many;
                     (void)cull::find_visible(tree, views, many, mode);
-                    std::vector<cull::ItemId> first;
-                    for (std::size_t i = 0; i < many.size(); ++i)
-                        if (many.view_mask(i) & 1u) first.push_back(many.ids()[i]);
-                    REQUIRE(sorted(first) == expected.ids);
+                    REQUIRE(expected.are_ids_of_view(many, 0));
                 }
             }
         }
@@ -123,13 +100,9 @@ TEST_SUITE("cull/oriented trees") {
             for (int frame = 0; frame < 40; ++frame) {
                 aged.live(random, 60);
                 const cull::View view = view_near(random, glm::dvec3(0.0), 40.0, frame);
-                std::vector<std::uint32_t> layers = aged.layers;
-                for (std::size_t i = 0; i < layers.size(); ++i)
-                    if (!aged.holds(i)) layers[i] = 0;
-                const Expected expected(aged.boxes, layers, view, CullMode::exact);
                 cull::VisibleSet visible;
                 cull::find_visible(aged.tree, view, visible);
-                REQUIRE(test::ranges::equal(visible.ids(), expected.ids));
+                REQUIRE(Classified(aged.boxes, aged.layers_in_tree(), view).is_answer(visible));
             }
         }
     }
