@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "cloud/cloud_kernels.cpp"
@@ -102,8 +103,24 @@ void project_boxes(const Boxes& boxes, std::size_t count, const double direction
     run(one, whole, count);
 }
 
-template <class T>
-void extents(const T* points, std::size_t begin, std::size_t end, const T* directions, const T* origin, T low[3],
+// Points as lanes of T, which are the points' own numbers or doubles.
+template <class D, class Point>
+HWY_INLINE void load_points(D d, const Point* points, hn::Vec<D>& x, hn::Vec<D>& y, hn::Vec<D>& z) {
+    if constexpr (std::is_same_v<Point, hn::TFromD<D>>) {
+        hn::LoadInterleaved3(d, points, x, y, z);
+    } else {
+        const hn::Rebind<Point, D> narrow;
+        auto nx = hn::Zero(narrow), ny = nx, nz = nx;
+        hn::LoadInterleaved3(narrow, points, nx, ny, nz);
+        x = hn::PromoteTo(d, nx);
+        y = hn::PromoteTo(d, ny);
+        z = hn::PromoteTo(d, nz);
+    }
+}
+
+// The extents of points, relative to the origin, along three directions.
+template <class T, class Point>
+void extents(const Point* points, std::size_t begin, std::size_t end, const T* directions, const T* origin, T low[3],
              T high[3]) {
     const hn::CappedTag<T, 16> d;
     const std::size_t lanes = hn::Lanes(d);
@@ -120,9 +137,9 @@ void extents(const T* points, std::size_t begin, std::size_t end, const T* direc
         const auto ox = hn::Set(d, origin[0]), oy = hn::Set(d, origin[1]), oz = hn::Set(d, origin[2]);
         auto low_a = hn::Set(d, kInfinity), low_b = low_a, low_c = low_a;
         auto high_a = hn::Set(d, -kInfinity), high_b = high_a, high_c = high_a;
-        for (; i + lanes <= end; i += lanes) {
+        const auto include = [&](std::size_t at) {
             auto x = hn::Undefined(d), y = x, z = x;
-            hn::LoadInterleaved3(d, points + 3 * i, x, y, z);
+            load_points(d, points + 3 * at, x, y, z);
             x = hn::Sub(x, ox);
             y = hn::Sub(y, oy);
             z = hn::Sub(z, oz);
@@ -135,7 +152,11 @@ void extents(const T* points, std::size_t begin, std::size_t end, const T* direc
             high_a = hn::Max(high_a, a);
             high_b = hn::Max(high_b, b);
             high_c = hn::Max(high_c, c);
-        }
+        };
+        for (; i + lanes <= end; i += lanes) include(i);
+        // The last vector may overlap the one before.
+        if (i < end) include(end - lanes);
+        i = end;
         const auto reduce = [&](auto least, auto greatest, int k) {
             low[k] = hn::GetLane(hn::MinOfLanes(d, least));
             high[k] = hn::GetLane(hn::MaxOfLanes(d, greatest));
@@ -145,10 +166,11 @@ void extents(const T* points, std::size_t begin, std::size_t end, const T* direc
         reduce(low_c, high_c, 2);
     }
     for (; i < end; ++i) {
-        const T* p = points + 3 * i;
-        const T x = p[0] - origin[0], y = p[1] - origin[1], z = p[2] - origin[2];
+        T p[3];
+        for (std::size_t k = 0; k < 3; ++k) p[k] = static_cast<T>(points[3 * i + k]) - origin[k];
         for (int k = 0; k < 3; ++k) {
-            const T t = directions[3 * k] * x + directions[3 * k + 1] * y + directions[3 * k + 2] * z;
+            const T* n = directions + 3 * k;
+            const T t = n[0] * p[0] + n[1] * p[1] + n[2] * p[2];
             low[k] = t < low[k] ? t : low[k];
             high[k] = t > high[k] ? t : high[k];
         }
@@ -178,84 +200,13 @@ void extents_double(const double* points, std::size_t count, const unsigned char
     extents_of_chunks(points, count, wanted, directions, origin, out);
 }
 
-template <class D>
-HWY_INLINE void load_points(D d, const float* points, hn::Vec<D>& x, hn::Vec<D>& y, hn::Vec<D>& z) {
-    const hn::Rebind<float, D> df;
-    auto fx = hn::Zero(df), fy = fx, fz = fx;
-    hn::LoadInterleaved3(df, points, fx, fy, fz);
-    x = hn::PromoteTo(d, fx);
-    y = hn::PromoteTo(d, fy);
-    z = hn::PromoteTo(d, fz);
-}
-template <class D>
-HWY_INLINE void load_points(D d, const double* points, hn::Vec<D>& x, hn::Vec<D>& y, hn::Vec<D>& z) {
-    hn::LoadInterleaved3(d, points, x, y, z);
-}
-
-template <class T>
-void slabs(const T* points, std::size_t count, const double center[3], const double normals[9], double low[3],
-           double high[3]) {
-    const hn::CappedTag<double, 8> d;
-    const std::size_t lanes = hn::Lanes(d);
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    for (int k = 0; k < 3; ++k) {
-        low[k] = kInfinity;
-        high[k] = -kInfinity;
-    }
-    std::size_t i = 0;
-    if (count >= lanes) {
-        const auto cx = hn::Set(d, center[0]), cy = hn::Set(d, center[1]), cz = hn::Set(d, center[2]);
-        const auto ax = hn::Set(d, normals[0]), ay = hn::Set(d, normals[1]), az = hn::Set(d, normals[2]);
-        const auto bx = hn::Set(d, normals[3]), by = hn::Set(d, normals[4]), bz = hn::Set(d, normals[5]);
-        const auto ex = hn::Set(d, normals[6]), ey = hn::Set(d, normals[7]), ez = hn::Set(d, normals[8]);
-        auto low_a = hn::Set(d, kInfinity), low_b = low_a, low_e = low_a;
-        auto high_a = hn::Set(d, -kInfinity), high_b = high_a, high_e = high_a;
-        const auto include = [&](std::size_t at) {
-            auto x = cx, y = cx, z = cx;
-            load_points(d, points + 3 * at, x, y, z);
-            x = hn::Sub(x, cx);
-            y = hn::Sub(y, cy);
-            z = hn::Sub(z, cz);
-            const auto a = hn::Add(hn::Add(hn::Mul(ax, x), hn::Mul(ay, y)), hn::Mul(az, z));
-            const auto b = hn::Add(hn::Add(hn::Mul(bx, x), hn::Mul(by, y)), hn::Mul(bz, z));
-            const auto e = hn::Add(hn::Add(hn::Mul(ex, x), hn::Mul(ey, y)), hn::Mul(ez, z));
-            low_a = hn::Min(low_a, a);
-            low_b = hn::Min(low_b, b);
-            low_e = hn::Min(low_e, e);
-            high_a = hn::Max(high_a, a);
-            high_b = hn::Max(high_b, b);
-            high_e = hn::Max(high_e, e);
-        };
-        for (; i + lanes <= count; i += lanes) include(i);
-        // The last vector may overlap the one before.
-        if (i < count) include(count - lanes);
-        i = count;
-        low[0] = hn::GetLane(hn::MinOfLanes(d, low_a));
-        low[1] = hn::GetLane(hn::MinOfLanes(d, low_b));
-        low[2] = hn::GetLane(hn::MinOfLanes(d, low_e));
-        high[0] = hn::GetLane(hn::MaxOfLanes(d, high_a));
-        high[1] = hn::GetLane(hn::MaxOfLanes(d, high_b));
-        high[2] = hn::GetLane(hn::MaxOfLanes(d, high_e));
-    }
-    for (; i < count; ++i) {
-        double p[3];
-        for (std::size_t k = 0; k < 3; ++k) p[k] = static_cast<double>(points[3 * i + k]) - center[k];
-        for (int k = 0; k < 3; ++k) {
-            const double* n = normals + 3 * k;
-            const double t = n[0] * p[0] + n[1] * p[1] + n[2] * p[2];
-            low[k] = t < low[k] ? t : low[k];
-            high[k] = t > high[k] ? t : high[k];
-        }
-    }
-}
-
 void slabs_float(const float* points, std::size_t count, const double center[3], const double normals[9], double low[3],
                  double high[3]) {
-    slabs(points, count, center, normals, low, high);
+    extents(points, 0, count, normals, center, low, high);
 }
 void slabs_double(const double* points, std::size_t count, const double center[3], const double normals[9],
                   double low[3], double high[3]) {
-    slabs(points, count, center, normals, low, high);
+    extents(points, 0, count, normals, center, low, high);
 }
 
 template <class T>
