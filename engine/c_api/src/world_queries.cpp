@@ -1,22 +1,31 @@
 // SPDX-License-Identifier: MIT
 #include <crofton/capi/crofton.h>
 #include <crofton/mesh/mesh_query.hpp>
+#include <crofton/world/world.hpp>
 
 #include <algorithm>
 #include <array>
 #include <limits>
 
+#include <crofton/capi/call.hpp>
 #include <crofton/capi/growing.hpp>
 #include <crofton/capi/numbers.hpp>
 #include <crofton/capi/queries.hpp>
 #include <crofton/capi/query_shapes.hpp>
 #include <crofton/capi/shapes.hpp>
 #include "clusters.hpp"
-#include "found.hpp"
 #include "world.hpp"
 
 using namespace crofton;
 using namespace crofton::capi;
+
+// A list of objects or of hits.
+struct crofton_found {
+    static constexpr std::uint32_t kKind = 0x43724f0a;
+    Header header;
+    Vector<ObjectRef> objects{};
+    Vector<ObjectHit> hits{};
+};
 
 static_assert(sizeof(crofton_object_ref) == sizeof(ObjectRef) &&
               offsetof(crofton_object_ref, user) == offsetof(ObjectRef, user));

@@ -9,13 +9,21 @@
 #include <crofton/capi/convert.hpp>
 #include <crofton/capi/growing.hpp>
 #include <crofton/capi/requests.hpp>
-#include "viewed.hpp"
+#include <crofton/capi/view_result.hpp>
+#include "world.hpp"
 
 using namespace crofton;
 using namespace crofton::capi;
 using Of = crofton_view_result::Of;
 
 namespace {
+
+// The result's objects are looked up in the World that was viewed, as it was then.
+crofton_status check_viewed(const crofton_view_result& result, const crofton_world& world, const char* function) {
+    if (result.serial == world.serial) return CROFTON_OK;
+    return report(CROFTON_INVALID_ARGUMENT, function,
+                  "the result is not of a view of this world, or the world has been updated since");
+}
 
 crofton_status view_one(const crofton_world& world, const crofton_view_request* request, Executor& executor,
                         const char* function, crofton_view_result& result) {

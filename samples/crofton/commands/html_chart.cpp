@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "html_chart.hpp"
+#include "html_report.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,6 @@
 #include <cstdio>
 
 #include "frames_table.hpp"
-#include "html_chart.hpp"
 #include "pipeline/png.hpp"
 
 namespace crofton::cli {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "help_panel.hpp"
+#include "panels.hpp"
 
 #include <algorithm>
 

@@ -6,12 +6,8 @@
 #include <string>
 #include <utility>
 
-#include "help_panel.hpp"
-#include "occlusion_panel.hpp"
-#include "scene_panel.hpp"
 #include "shape_colors.hpp"
 #include "statistics_panel.hpp"
-#include "switches_panel.hpp"
 
 namespace crofton::viewer {
 namespace {

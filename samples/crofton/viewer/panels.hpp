@@ -92,4 +92,11 @@ void apply_style(float scale);
 [[nodiscard]] float half_beside_main_panel(float display, float font);
 [[nodiscard]] PanelWish draw_panels(const PanelInput& input);
 
+// Parts of draw_panels(), each in a file of its own.
+void help_panel(Settings& settings, PanelWish& wish);           // the list of keys
+void notices_panel(const std::deque<Notice>& notices);          // messages that come and go
+void scene_panel(const PanelInput& input, PanelWish& wish);     // the scene graph, and the picked instance
+void switches_panel(const PanelInput& input, PanelWish& wish);  // all switches, each with its key
+void depth_panel(const PanelInput& input, PanelWish& wish);     // the occluders' depth buffer
+
 }  // namespace crofton::viewer

@@ -6,7 +6,6 @@
 #include "assets/file.hpp"
 #include "keys.hpp"
 #include "pipeline/camera_path.hpp"
-#include "script_lines.hpp"
 #include "settings.hpp"
 
 namespace crofton::viewer {

@@ -2,6 +2,8 @@
 // Scripts for unattended runs: keys, cameras, switches and pictures by frame.
 #pragma once
 #include <crofton/geometry/camera.hpp>
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,5 +30,11 @@ struct Action {
 // Frames never decrease. Errors name the line and the event by its number.
 [[nodiscard]] Result<std::vector<Action>> parse_script(const std::string& text);
 [[nodiscard]] Result<std::vector<Action>> load_script(const std::string& path);
+
+// The line, from 1, on which the text stops being JSON. Absent where it is JSON.
+[[nodiscard]] std::optional<std::size_t> line_of_syntax_error(const std::string& text);
+
+// The line, from 1, on which each entry of the array under the top-level name "events" begins. Requires JSON.
+[[nodiscard]] std::vector<std::size_t> lines_of_events(const std::string& text);
 
 }  // namespace crofton::viewer

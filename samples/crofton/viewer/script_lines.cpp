@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "script_lines.hpp"
+#include "script.hpp"
 
 #include <algorithm>
 

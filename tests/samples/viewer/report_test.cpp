@@ -6,7 +6,7 @@
 #include <string>
 
 #include "../cli/run_cli.hpp"
-#include "commands/html_chart.hpp"
+#include "commands/html_report.hpp"
 #include "pipeline/frame_statistics.hpp"
 
 using namespace crofton::test;

@@ -6,8 +6,7 @@
 #include <crofton/capi/call.hpp>
 #include <crofton/capi/clustered_mesh.hpp>
 #include <crofton/capi/convert.hpp>
-#include "scene.hpp"
-#include "tree.hpp"
+#include "handles.hpp"
 
 using namespace crofton;
 using namespace crofton::capi;

@@ -3,7 +3,7 @@
 
 #include <crofton/capi/convert.hpp>
 #include <crofton/capi/mesh.hpp>
-#include "scene.hpp"
+#include "handles.hpp"
 
 using namespace crofton;
 using namespace crofton::capi;

@@ -8,7 +8,7 @@
 
 #include <crofton/capi/query_shapes.hpp>
 #include <crofton/capi/requests.hpp>
-#include "tree.hpp"
+#include "handles.hpp"
 
 using namespace crofton;
 using namespace crofton::capi;
