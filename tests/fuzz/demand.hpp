@@ -29,12 +29,16 @@ class Tally {
 };
 inline Tally tally;
 
-// Ends the process, which is how a fuzzer is told; the text says what failed.
+// Requires that `what` holds: ends the process, which is how a fuzzer is told, or a test's case.
 inline void demand(bool holds, const char* what) {
     tally.demand();
+#ifdef DOCTEST_LIBRARY_INCLUDED
+    REQUIRE_MESSAGE(holds, what);
+#else
     if (holds) return;
     std::fprintf(stderr, "fuzz: %s\n", what);
     std::abort();
+#endif
 }
 
 }  // namespace crofton::fuzz

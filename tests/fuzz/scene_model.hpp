@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// A scene that is changed by the fuzzer's bytes, with a plain model of it beside.
+// A scene that is changed by bytes, a fuzzer's or a test's, with a plain model of it.
 #pragma once
 #include <crofton/scene/scene.hpp>
 #include <oracle/plain_scene.hpp>
+#include <set>
 
 #include "shapes.hpp"
 
@@ -25,11 +26,11 @@ class LivingScene {
     }
 
     // Updates, and compares all that the scene says with the model.
-    void settle() {
+    void settle(Executor& executor = serial_executor()) {
         const std::vector<Obb> before(scene.world_boxes().begin(), scene.world_boxes().end());
         std::map<scene::InstanceId, std::uint32_t> masks;
         for (const auto& [id, instance] : plain.instances) masks[id] = scene.layer_masks()[id];
-        scene.update();
+        scene.update(executor);
         std::vector<scene::InstanceId> moved, relayered;
         for (auto& [id, instance] : plain.instances) {
             const auto answer = plain.answer(instance);
@@ -47,8 +48,10 @@ class LivingScene {
         demand(same(scene.relayered_instances(), relayered), "what has other layers");
         demand(same(scene.removed_instances(), plain.removed), "what was removed");
         plain.removed.clear();
-        for (scene::InstanceId i = 0; i < scene.instance_count(); ++i)
+        for (scene::InstanceId i = 0; i < scene.instance_count(); ++i) {
             demand(scene.is_removed(i) == !plain.instances.contains(i), "whether an instance is there");
+            demand(!scene.is_removed(i) || scene.layer_masks()[i] == 0, "the layers of what is not there");
+        }
         for (scene::NodeId n = 0; n < scene.node_count(); ++n)
             demand(scene.is_node_removed(n) == !plain.nodes.contains(n), "whether a node is there");
     }
@@ -65,7 +68,7 @@ class LivingScene {
         if (kind == 2)
             for (int k = 0; k < 3; ++k) result.linear[k] *= in.grid();
         if (kind == 3) result.linear[1] = in.direction();
-        if (kind == 4 && in.below(4) == 0) result.linear *= 1e13;
+        if (kind == 4 && in.below(4) == 0) result.linear *= in.flag() ? 1e13 : 1e-14;
         return result;
     }
     template <class Map>
@@ -93,10 +96,27 @@ class LivingScene {
         demand(instance.has_value() && !plain.instances.contains(*instance), "add_instance");
         plain.instances[*instance] = {node, mesh, ~0u};
     }
+    void visit_all_below(scene::NodeId node) const {
+        std::set<scene::NodeId> below, expected;
+        std::set<scene::InstanceId> on, expected_on;
+        scene.visit_subtree(
+            node,
+            [&](scene::NodeId n) {
+                demand(n == node || below.contains(scene.parent_of(n)), "parents before children");
+                demand(below.insert(n).second, "a node once");
+            },
+            [&](scene::InstanceId i) { demand(on.insert(i).second, "an instance once"); });
+        for (const auto& entry : plain.nodes)
+            if (plain.is_below(entry.first, node)) expected.insert(entry.first);
+        for (const auto& [i, instance] : plain.instances)
+            if (plain.is_below(instance.node, node)) expected_on.insert(i);
+        demand(below == expected && on == expected_on, "all below a node");
+    }
     void change_node(Shapes& in) {
         const scene::NodeId node = pick(in, plain.nodes);
         switch (in.below(5)) {
             case 0:
+                visit_all_below(node);
                 demand(scene.remove_node(node).has_value(), "remove_node");
                 return plain.remove_node(node);
             case 1:

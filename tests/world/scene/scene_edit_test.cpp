@@ -10,11 +10,31 @@
 #include <set>
 
 #include "counting_memory.hpp"
-#include "edited_pair.hpp"
+#include "fuzz/scene_model.hpp"
 
 using namespace crofton;
 using namespace crofton::scene;
-using namespace crofton::scene::edit_test;
+
+namespace {
+
+TriangleMesh tetrahedron(float size = 1.0f) {
+    TriangleMesh mesh;
+    mesh.positions = {{0, 0, 0}, {size, 0, 0}, {0, size, 0}, {0, 0, size}};
+    mesh.indices = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
+    return mesh;
+}
+
+Transform moved(double x, double y = 0.0, double z = 0.0) {
+    return {glm::dmat3(1.0), {x, y, z}};
+}
+
+template <class T>
+std::vector<T> list(std::span<const T> values) {
+    return {values.begin(), values.end()};
+}
+using Ids = std::vector<std::uint32_t>;
+
+}  // namespace
 
 TEST_SUITE("scene/edit") {
     TEST_CASE("removed and unknown ids are refused by name and leave the scene as it was") {
@@ -234,16 +254,16 @@ TEST_SUITE("scene/edit") {
 
     TEST_CASE("random edits, on one thread and on three, give what a plain model computes from the roots") {
         ThreadPool pool(3);
-        for (std::uint32_t seed = 0; seed < 60; ++seed) {
-            CAPTURE(seed);
-            Pair pair(seed);
-            for (int round = 0; round < 40; ++round) {
-                const auto edits = pair.random() % 30;
-                for (std::size_t e = 0; e < edits; ++e) pair.edit();
-                if (seed % 2 == 0)
-                    pair.update_and_compare(serial_executor());
-                else
-                    pair.update_and_compare(pool);
+        std::mt19937 random(1);
+        for (int life = 0; life < 60; ++life) {
+            CAPTURE(life);
+            std::vector<std::uint8_t> bytes(20'000);
+            for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random());
+            fuzz::Shapes in(bytes.data(), bytes.size());
+            fuzz::LivingScene living(in);
+            while (in.more()) {
+                for (unsigned edits = in.below(30); edits > 0; --edits) living.change(in);
+                living.settle(life % 2 == 0 ? serial_executor() : pool);
             }
         }
     }
