@@ -19,11 +19,29 @@ constexpr double kFlush = 0x1p-22;
 constexpr double kFlatSlope = 2e-5;
 constexpr double kShallow = 0.25;
 
+// 0 of a half-space.
 double reach_of(const Shape& shape) {
-    return shape.core_radius() + shape.radius();
+    return shape.is_bounded() ? shape.core_radius() + shape.radius() : 0.0;
 }
 
+ShapeAtPose point_at(const RigidTransform& place) {
+    static const Shape kPoint = *Shape::sphere(0.0);
+    return {kPoint, place};
+}
+
+// Whether the cores of a, which is no half-space, and b are surely no farther apart than this.
+bool are_within(const ShapeAtPose& a, const ShapeAtPose& b, double distance) {
+    if (is_half_space(b)) return half_space_gap(b, a).gap <= distance;
+    return nearest_points(Pair(a, b), nullptr, 0.5 * distance, distance).lower <= distance;
+}
+
+// A half-space rises without end but along its normal.
 bool rises_above(const ShapeAtPose& shape, const glm::dvec3& point, const glm::dvec3& direction, double tolerance) {
+    if (is_half_space(shape)) {
+        const RigidTransform at{glm::dmat3(1.0), point};
+        const HalfSpaceGap gap = half_space_gap(shape, point_at(at));
+        return glm::distance(gap.outward, direction) > kFlatSine || -gap.gap > tolerance;
+    }
     const Support s = core_support(shape.shape, Pair::local(shape.pose.rotation, direction));
     const glm::dvec3 way =
         shape.pose.rotation * s.point + (shape.pose.translation - point) + shape.shape.radius() * direction;
@@ -86,13 +104,13 @@ double flush_tolerance(const ShapeAtPose& a, const ShapeAtPose& b) {
 }
 
 // Where a contact is on one of its parts, as far as that part is farthest along the normal there: points, those between
-// them, and their middle.
+// them, and their middle. Points within `rounding` of the farthest are as far, so that rounding chooses none of them.
 struct UnionNormals::Samples {
     glm::dvec3 point[25], middle{0.0};
     int corners = 0, count;
     double radius = 0.0;
 
-    Samples(const Contact& contact, int list) {
+    Samples(const Contact& contact, int list, double rounding) {
         const double side = list == 0 ? 1.0 : -1.0;
         glm::dvec3 place[8];
         double along[8], most = -HUGE_VAL;
@@ -102,9 +120,13 @@ struct UnionNormals::Samples {
             along[i] = side * glm::dot(contact.normal, place[i] - place[0]);
             most = std::max(most, along[i]);
         }
-        for (int i = 0; i < contact.count; ++i)
-            if (along[i] >= most - kFlatSine * (glm::distance(place[i], place[0]) + std::abs(most)))
-                point[corners++] = place[i];
+        const double top = most - rounding;
+        for (int i = 0; i < contact.count; ++i) {
+            bool farthest = along[i] >= top;
+            for (int k = 0; k < contact.count && !farthest; ++k)
+                farthest = along[k] >= top && top - along[i] <= kFlatSine * glm::distance(place[i], place[k]);
+            if (farthest) point[corners++] = place[i];
+        }
         for (int i = 0; i < corners; ++i) middle += point[i] / static_cast<double>(corners);
         count = corners;
         for (int i = 0; i < corners; ++i) {
@@ -143,7 +165,8 @@ void UnionNormals::add_contact(std::uint32_t first, std::uint32_t second, const 
 UnionNormals::Neighbor UnionNormals::neighbor_of(int list, std::uint32_t own, std::uint32_t other) const {
     const ShapeAtPose shape = placed(list, other);
     const double tolerance = flush_tolerance(placed(list, own), shape);
-    return {other, shape, tolerance, reach_of(shape.shape) + tolerance, to_local_[list][other]};
+    const double reach = shape.shape.is_bounded() ? reach_of(shape.shape) + tolerance : HUGE_VAL;
+    return {other, shape, tolerance, reach, to_local_[list][other]};
 }
 
 bool UnionNormals::Neighbor::is_near(const glm::dvec3& point, double radius) const {
@@ -171,9 +194,8 @@ bool UnionNormals::Neighbor::holds(const glm::dvec3& point) const {
         if (beyond > within + slack) return false;
         if (beyond < -slack) return true;
     }
-    static const Shape kPoint = *Shape::sphere(0.0);
     const RigidTransform at{glm::dmat3(1.0), point};
-    return !(nearest_points(Pair({kPoint, at}, shape), nullptr, 0.5 * within, within).lower > within);
+    return are_within(point_at(at), shape, within);
 }
 
 // Along one of the box's axes. Frames are rigid to 1e-6.
@@ -211,9 +233,10 @@ bool UnionNormals::is_covered(const glm::dvec3& point, const glm::dvec3& directi
                        [&](const Neighbor& neighbor) { return neighbor.covers(point, direction); });
 }
 
-// Whether a neighbour that rises above the contact's polygon comes to any point of it.
+// Whether a neighbour that rises above the contact's polygon comes to any point of it. A half-space holds a corner,
+// too.
 bool UnionNormals::meets_polygon(const Neighbor& neighbor, const Samples& samples, const glm::dvec3& direction) {
-    if (neighbor.is_box() && neighbor.is_beside(samples)) return false;
+    if (is_half_space(neighbor.shape) || (neighbor.is_box() && neighbor.is_beside(samples))) return false;
     const ShapeAtPose& shape = neighbor.shape;
     const double within = shape.shape.radius() + neighbor.tolerance;
     // How far its highest point rises above the lowest of the polygon's, and how far it is from all of them.
@@ -246,9 +269,13 @@ bool UnionNormals::Neighbor::covers_any(const Samples& samples, const glm::dvec3
     return samples.corners > 1 && meets_polygon(*this, samples, direction);
 }
 
+UnionNormals::Samples UnionNormals::samples_of(const Contact& contact, int list) const {
+    return {contact, list, flush_tolerance(placed(0, contact.part[0]), placed(1, contact.part[1]))};
+}
+
 UnionNormals::State UnionNormals::state_on(int list, const Contact& contact) const {
     if (parts_[list].size() < 2) return State::free;
-    const Samples samples(contact, list);
+    const Samples samples = samples_of(contact, list);
     const glm::dvec3 direction = list == 0 ? contact.normal : -contact.normal;
     list_near(list, contact.part[list], samples.middle, samples.radius);
     if (near_.empty()) return State::free;
@@ -267,20 +294,26 @@ UnionNormals::State UnionNormals::state_on(int list, const Contact& contact) con
     return State::free;
 }
 
+bool UnionNormals::is_of_half_space(const Contact& contact) const {
+    return is_half_space(placed(0, contact.part[0])) || is_half_space(placed(1, contact.part[1]));
+}
+
+// No other normal parts a shape from a half-space.
 UnionNormals::State UnionNormals::state_of(const Contact& contact) const {
+    if (is_of_half_space(contact)) return State::free;
     const State first = state_on(0, contact);
     return first == State::covered ? first : std::max(first, state_on(1, contact));
 }
 
 // Whether the motion that ends one contact ends the other.
 bool UnionNormals::parts_pair(const Contact& by, const Contact& contact) const {
+    if (is_of_half_space(contact)) return false;
     const ShapeAtPose a = placed(0, contact.part[0]), b = placed(1, contact.part[1]);
-    const Pair pair(a, b);
-    double extent = 0.0;
-    const Corner farthest = pair.support(by.normal, extent);
-    extent += a.shape.radius() + b.shape.radius();
-    const glm::dvec3 near = contact.points[0].position - a.pose.translation;
-    const double away = glm::distance(farthest.on_a, near) + glm::distance(farthest.on_b, near);
+    const double extent = Pair(a, b).extent(by.normal) + a.shape.radius() + b.shape.radius();
+    // From the contact to what is farthest along the normal, at most: which corner of a face that is, rounding decides.
+    const glm::dvec3& near = contact.points[0].position;
+    const double away = glm::distance(a.pose.translation, near) + reach_of(a.shape) +
+                        glm::distance(b.pose.translation, near) + reach_of(b.shape);
     return extent <= by.depth + flush_tolerance(a, b) + kFlatSlope * away;
 }
 
@@ -407,13 +440,13 @@ bool UnionNormals::is_behind(const Contact& contact, const Contact& other) const
     if (!(other.depth > 0.0) || first_differs == second_differs) return false;
     if (!parts_pair(other, contact) || parts_pair(contact, other)) return false;
     const int list = first_differs ? 0 : 1;
-    const Samples samples(contact, list);
+    const Samples samples = samples_of(contact, list);
     const ShapeAtPose shape = placed(list, other.part[list]);
     const double within = shape.shape.radius() + flush_tolerance(placed(list, contact.part[list]), shape);
     const glm::dvec3 way = (list == 0 ? other.depth : -other.depth) * other.normal;
     const RigidTransform at{glm::dmat3(1.0), samples.middle};
     const Shape swept = ShapeMaker::triangle({glm::dvec3(0.0), way, way});
-    return nearest_points(Pair({swept, at}, shape), nullptr, 0.5 * within, within).lower <= within;
+    return are_within({swept, at}, shape, within);
 }
 
 void UnionNormals::replace_behind() {
@@ -451,6 +484,7 @@ void UnionNormals::keep_deepest(const Contact& from, Contact& contact) const {
 bool UnionNormals::may_be_behind(int list, std::uint32_t part) const {
     const Contact& contact = contacts_[0];
     const ShapeAtPose a = placed(0, list == 0 ? part : 0), b = placed(1, list == 0 ? 0 : part);
+    if (is_half_space(a) || is_half_space(b)) return true;
     const Pair pair(a, b);
     const double reach = reach_of(a.shape) + reach_of(b.shape);
     if (glm::dot(pair.offset, pair.offset) > reach * reach * (1.0 + 1e-12)) return false;
@@ -459,10 +493,11 @@ bool UnionNormals::may_be_behind(int list, std::uint32_t part) const {
 
 bool UnionNormals::is_first_left(PartTest counts, PairTouch touch) {
     const Contact& contact = contacts_[0];
+    if (is_of_half_space(contact)) return true;
     bool any_covers = false;
     glm::dvec3 middle[2];
     for (int list = 0; list < 2; ++list) {
-        const Samples samples(contact, list);
+        const Samples samples = samples_of(contact, list);
         middle[list] = samples.middle;
         const glm::dvec3 direction = list == 0 ? contact.normal : -contact.normal;
         list_near(list, 0, samples.middle, samples.radius);
@@ -500,7 +535,6 @@ bool UnionNormals::is_any_covered() const {
 
 void UnionNormals::apply(std::size_t told) {
     if (contacts_.empty() || parts_[0].size() + parts_[1].size() < 3) return;
-    if (is_half_space(placed(1, 0))) return;  // its normal is one already
     raw_.assign(contacts_.begin(), contacts_.begin() + static_cast<std::ptrdiff_t>(told));
     states_.clear();
     for (const Contact& contact : contacts_) states_.push_back(state_of(contact));

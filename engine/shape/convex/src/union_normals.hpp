@@ -50,9 +50,11 @@ class UnionNormals {
   private:
     enum class State : std::uint8_t { free, partly_covered, covered, replaced };
     struct Samples;
+    [[nodiscard]] Samples samples_of(const Contact& contact, int list) const;
     [[nodiscard]] ShapeAtPose placed(int list, std::uint32_t number) const {
         return {parts_[list][number].shape, parts_[list][number].pose};
     }
+    [[nodiscard]] bool is_of_half_space(const Contact& contact) const;
     [[nodiscard]] State state_of(const Contact& contact) const;
     [[nodiscard]] State state_on(int list, const Contact& contact) const;
     [[nodiscard]] static bool is_sharp_box(const Shape& shape) {
