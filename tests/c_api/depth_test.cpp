@@ -86,12 +86,21 @@ crofton_picture_view picture_of(std::uint32_t width, std::uint32_t height) {
 
 std::span<const crofton_visible_cluster> find(const DepthCuller& culler, std::span<const crofton_depth_object> objects,
                                               const crofton_picture_view& picture,
-                                              crofton_depth_statistics* statistics = nullptr) {
+                                              crofton_depth_statistics* statistics = nullptr,
+                                              const crofton_jobs* jobs = nullptr) {
     const crofton_visible_cluster* clusters = nullptr;
     std::size_t count = 0;
-    REQUIRE(crofton_depth_culler_find_visible(culler.get(), objects.data(), objects.size(), &picture, &clusters, &count,
-                                              statistics) == CROFTON_OK);
+    REQUIRE(crofton_depth_culler_find_visible(culler.get(), objects.data(), objects.size(), &picture, jobs, &clusters,
+                                              &count, statistics) == CROFTON_OK);
     return {clusters, count};
+}
+
+// A job system that runs the last range first; `user` counts the ranges.
+void run_backwards(void* user, std::size_t count, std::size_t grain, crofton_range_task task, void* data) {
+    for (std::size_t range = (count + grain - 1) / grain; range-- > 0;) {
+        task(data, range * grain, std::min(count, (range + 1) * grain), static_cast<std::uint32_t>(range % 3));
+        ++*static_cast<std::size_t*>(user);
+    }
 }
 
 int listed_of(std::span<const crofton_visible_cluster> found, std::uint32_t object) {
@@ -137,7 +146,7 @@ TEST_SUITE("capi/depth") {
         }
     }
 
-    TEST_CASE("C lists the same clusters as C++, with every member of an object and in every depth range") {
+    TEST_CASE("C lists the same clusters as C++, in every depth range and with the host's jobs") {
         std::mt19937 random(9);
         const auto uniform = [&](double low, double high) {
             return low + (high - low) * (static_cast<double>(random()) / 4294967296.0);
@@ -158,9 +167,11 @@ TEST_SUITE("capi/depth") {
         }
         const DepthCuller culler = make_depth_culler();
         crofton::depth::DepthCuller same;
-        for (const auto depth : {crofton::DepthRange::reversed_zero_to_one, crofton::DepthRange::zero_to_one,
-                                 crofton::DepthRange::minus_one_to_one}) {
-            CAPTURE(static_cast<int>(depth));
+        for (int round = 0; round < 6; ++round) {
+            const auto depth = std::array{crofton::DepthRange::reversed_zero_to_one, crofton::DepthRange::zero_to_one,
+                                          crofton::DepthRange::minus_one_to_one}[round / 2];
+            const bool by_jobs = round % 2 == 1;
+            CAPTURE(round);
             std::vector<crofton_depth_object> objects;
             std::vector<crofton::depth::DepthObject> same_objects;
             for (int i = 0; i < 60; ++i) {
@@ -181,7 +192,10 @@ TEST_SUITE("capi/depth") {
             picture.depth = static_cast<std::uint32_t>(depth);
             picture.samples = 1u << random() % 3;
             auto statistics = sized<crofton_depth_statistics>();
-            const auto found = find(culler, objects, picture, &statistics);
+            std::size_t ranges = 0;
+            const crofton_jobs jobs{sizeof jobs, &ranges, 3, run_backwards};
+            const auto found = find(culler, objects, picture, &statistics, by_jobs ? &jobs : nullptr);
+            CHECK((ranges > 3) == by_jobs);
             const auto expected = same.find_visible(same_objects, {192, 108, depth, picture.samples}).value();
             REQUIRE(found.size() == expected.size());
             REQUIRE(found.size() > 20);
@@ -339,9 +353,11 @@ TEST_SUITE("capi/depth") {
 
         const crofton_visible_cluster* clusters = nullptr;
         std::size_t count = 77;
+        std::size_t ranges = 0;
+        crofton_jobs jobs{sizeof jobs, &ranges, 3, run_backwards};
         const auto ask = [&] {
-            return crofton_depth_culler_find_visible(culler.get(), objects.data(), objects.size(), &picture, &clusters,
-                                                     &count, nullptr);
+            return crofton_depth_culler_find_visible(culler.get(), objects.data(), objects.size(), &picture, &jobs,
+                                                     &clusters, &count, nullptr);
         };
         objects[1].mesh = nullptr;
         CHECK(ask() == CROFTON_BAD_HANDLE);
@@ -372,9 +388,17 @@ TEST_SUITE("capi/depth") {
         picture.size = sizeof picture + 8;
         CHECK(ask() == CROFTON_WRONG_SIZE);
         picture = picture_of(64, 36);
+        jobs.concurrency = 0;
+        CHECK(ask() == CROFTON_INVALID_ARGUMENT);
+        CHECK(mentions(crofton_last_error(), "jobs need"));
+        jobs = {sizeof jobs - 8, &ranges, 3, run_backwards};
+        CHECK(ask() == CROFTON_WRONG_SIZE);
+        CHECK(ranges == 0);
+        jobs.size = sizeof jobs;
         const auto ask_with = [&](const crofton_depth_object* some, const crofton_picture_view* seen,
                                   const crofton_visible_cluster** answer, std::size_t* answer_count) {
-            return crofton_depth_culler_find_visible(culler.get(), some, 3, seen, answer, answer_count, nullptr);
+            return crofton_depth_culler_find_visible(culler.get(), some, 3, seen, nullptr, answer, answer_count,
+                                                     nullptr);
         };
         CHECK(ask_with(nullptr, &picture, &clusters, &count) == CROFTON_INVALID_ARGUMENT);
         CHECK(ask_with(objects.data(), nullptr, &clusters, &count) == CROFTON_INVALID_ARGUMENT);
@@ -387,7 +411,7 @@ TEST_SUITE("capi/depth") {
         CHECK(first.back().triangles == listed[1]);
         auto statistics = sized<crofton_depth_statistics>();
         statistics.size = 4;
-        CHECK(crofton_depth_culler_find_visible(culler.get(), objects.data(), 3, &picture, &clusters, &count,
+        CHECK(crofton_depth_culler_find_visible(culler.get(), objects.data(), 3, &picture, nullptr, &clusters, &count,
                                                 &statistics) == CROFTON_WRONG_SIZE);
         CHECK(count == 77);
         statistics.size = sizeof statistics;
@@ -428,7 +452,7 @@ TEST_SUITE("capi/depth") {
         statistics.size = offsetof(crofton_depth_statistics, triangles_listed);
         REQUIRE(crofton_depth_culler_find_visible(culler.get(),
                                                   reinterpret_cast<const crofton_depth_object*>(packed.data()), 3,
-                                                  &picture, &clusters, &count, &statistics) == CROFTON_OK);
+                                                  &picture, nullptr, &clusters, &count, &statistics) == CROFTON_OK);
         REQUIRE(count == expected.size());
         CHECK(std::memcmp(clusters, expected.data(), count * sizeof *clusters) == 0);
         CHECK(statistics.objects_asked == 3);

@@ -132,7 +132,7 @@ TEST_SUITE("capi/hooks") {
             std::size_t count = 0, warm = 0;
             for (int i = 0; i < 10; ++i) {
                 REQUIRE(crofton_depth_culler_find_visible(culler.get(), objects.data(), objects.size(), &picture,
-                                                          &clusters, &count, nullptr) == CROFTON_OK);
+                                                          nullptr, &clusters, &count, nullptr) == CROFTON_OK);
                 CHECK(count > 20);
                 if (i == 0) warm = counter.allocations;
                 CHECK(counter.allocations == warm);

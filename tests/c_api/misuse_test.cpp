@@ -64,7 +64,7 @@ TEST_SUITE("capi/misuse") {
             const crofton_picture_view picture = crofton_default_picture_view();
             const crofton_visible_cluster* clusters = nullptr;
             std::size_t found = 0;
-            CHECK(crofton_depth_culler_find_visible(culler.get(), &object, count, &picture, &clusters, &found,
+            CHECK(crofton_depth_culler_find_visible(culler.get(), &object, count, &picture, nullptr, &clusters, &found,
                                                     nullptr) == CROFTON_OUT_OF_RANGE);
             auto polygon = sized<crofton_polygon>();
             polygon.points = doubles;

@@ -112,7 +112,7 @@ struct Walls {
         const DepthCuller culler = make_depth_culler();
         const crofton_visible_cluster* clusters = nullptr;
         std::size_t count = 0;
-        REQUIRE(crofton_depth_culler_find_visible(culler.get(), asked.data(), 3, &picture, &clusters, &count,
+        REQUIRE(crofton_depth_culler_find_visible(culler.get(), asked.data(), 3, &picture, nullptr, &clusters, &count,
                                                   nullptr) == CROFTON_OK);
         List list = list_of(clusters, count);
         for (auto& c : list) c[0] = objects[c[0]].index;

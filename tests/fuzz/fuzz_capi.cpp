@@ -294,8 +294,8 @@ void picture(World& world, Input& in) {
     view.depth = in.below(4);
     const crofton_visible_cluster* found = nullptr;
     std::size_t count = 0;
-    if (crofton_depth_culler_find_visible(world.depth_culler, objects.data(), objects.size(), &view, &found, &count,
-                                          nullptr) != CROFTON_OK)
+    if (crofton_depth_culler_find_visible(world.depth_culler, objects.data(), objects.size(), &view, nullptr, &found,
+                                          &count, nullptr) != CROFTON_OK)
         return;
     for (std::size_t i = 0; i < count; ++i) {
         demand(found[i].object < objects.size());

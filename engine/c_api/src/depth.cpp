@@ -10,6 +10,7 @@
 
 #include <crofton/capi/call.hpp>
 #include <crofton/capi/clustered_mesh.hpp>
+#include <crofton/capi/convert.hpp>
 #include <crofton/capi/growing.hpp>
 #include <crofton/capi/requests.hpp>
 #include "clusters.hpp"
@@ -97,8 +98,8 @@ crofton_status crofton_depth_culler_destroy(crofton_depth_culler* culler) {
 
 crofton_status crofton_depth_culler_find_visible(crofton_depth_culler* culler, const crofton_depth_object* objects,
                                                  size_t object_count, const crofton_picture_view* picture,
-                                                 const crofton_visible_cluster** clusters, size_t* count,
-                                                 crofton_depth_statistics* statistics) {
+                                                 const crofton_jobs* jobs, const crofton_visible_cluster** clusters,
+                                                 size_t* count, crofton_depth_statistics* statistics) {
     const ExclusiveUse use(culler, __func__);
     if (use.failed()) return use.status();
     CROFTON_CHECK(check_array(objects, object_count, __func__));
@@ -107,13 +108,15 @@ crofton_status crofton_depth_culler_find_visible(crofton_depth_culler* culler, c
     if (statistics) CROFTON_CHECK(check_growing(statistics, __func__));
     depth::PictureView view;
     CROFTON_CHECK(read_picture(picture, __func__, view));
+    CROFTON_CHECK(check_jobs(jobs, __func__));
     culler->objects.clear();
     for (std::size_t i = 0; i < object_count; ++i) {
         crofton_depth_object given;
         CROFTON_CHECK(of_item(read_growing_at(objects, i, __func__, given), i));
         CROFTON_CHECK(of_item(add_object(given, __func__, culler->objects), i));
     }
-    const auto found = culler->culler.find_visible(culler->objects, view);
+    HostJobs executor(jobs);
+    const auto found = culler->culler.find_visible(culler->objects, view, executor);
     if (!found) return report(found.error(), __func__);
     culler->width = view.width;
     culler->height = view.height;

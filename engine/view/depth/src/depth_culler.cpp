@@ -17,10 +17,7 @@ namespace {
 constexpr std::uint32_t kStripsPerThread = 2;
 
 Result<void> check(std::span<const DepthObject> objects, const PictureView& view) {
-    if (view.width == 0 || view.height == 0 || view.width > PictureView::kMaxSize ||
-        view.height > PictureView::kMaxSize)
-        return fail(ErrorCode::out_of_range, kNoItem, "depth: a picture has 1 to 16,384 pixels each way");
-    if (!view.has_samples()) return fail(ErrorCode::out_of_range, kNoItem, "depth: a pixel has 1, 2, 4 or 8 samples");
+    if (auto checked = view.check(); !checked) return checked;
     if (objects.size() >= std::numeric_limits<std::uint32_t>::max())
         return fail(ErrorCode::out_of_range, kNoItem, "depth: too many objects");
     for (std::size_t i = 0; i < objects.size(); ++i)
@@ -31,6 +28,14 @@ Result<void> check(std::span<const DepthObject> objects, const PictureView& view
 }
 
 }  // namespace
+
+Result<void> PictureView::check(std::uint64_t item) const {
+    if (width == 0 || height == 0 || width > kMaxSize || height > kMaxSize)
+        return fail(ErrorCode::out_of_range, item, "picture: it has 1 to 16,384 pixels each way");
+    if (!std::has_single_bit(samples) || samples > 8)
+        return fail(ErrorCode::out_of_range, item, "picture: a pixel has 1, 2, 4 or 8 samples");
+    return {};
+}
 
 struct DepthCuller::State {
     DepthFrame frame;

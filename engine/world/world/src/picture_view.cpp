@@ -58,12 +58,7 @@ Result<void> check_picture(const ViewRequest& request, std::uint64_t item) {
     if (request.occlusion) return refuse("view: set `occlusion` or `picture`, not both");
     if (request.matrix && request.matrix->depth != request.picture->depth)
         return refuse("view: the matrix and the picture must have the same depth range");
-    const depth::PictureView& p = *request.picture;
-    if (p.width == 0 || p.height == 0 || p.width > depth::PictureView::kMaxSize ||
-        p.height > depth::PictureView::kMaxSize)
-        return fail(ErrorCode::out_of_range, item, "view: a picture has 1 to 16,384 pixels each way");
-    if (!p.has_samples()) return fail(ErrorCode::out_of_range, item, "view: a pixel has 1, 2, 4 or 8 samples");
-    return {};
+    return request.picture->check(item);
 }
 
 void PictureView::find(const ViewRequest& request, const InFrustum& in_frustum, DrawnOf drawn_of, Executor& executor) {

@@ -67,13 +67,14 @@ CROFTON_API crofton_status crofton_depth_culler_create(crofton_depth_culler** cu
 CROFTON_API crofton_status crofton_depth_culler_destroy(crofton_depth_culler* culler);
 /* Lists the triangles that the picture needs, by object, then by cluster; valid until the next call. If you draw them,
  * or any set that contains them, in the order in which you would draw all triangles, the picture has the same bits.
- * This holds for opaque triangles with the depth test on, one sample a pixel and 32-bit float depth; the guide says
- * what else the renderer must do. The item of an error is the object; the last answer then stays. Allocates nothing
- * once it has held as many. `statistics` or NULL: a struct whose `size` is set.
+ * This holds for opaque triangles with the depth test on and 32-bit float depth, at the picture's samples; the guide
+ * says what else the renderer must do. The item of an error is the object; the last answer then stays. Allocates
+ * nothing once it has held as many. `statistics` or NULL: a struct whose `size` is set.
  */
 CROFTON_API crofton_status crofton_depth_culler_find_visible(crofton_depth_culler* culler,
                                                              const crofton_depth_object* objects, size_t object_count,
                                                              const crofton_picture_view* picture,
+                                                             const crofton_jobs* jobs,
                                                              const crofton_visible_cluster** clusters, size_t* count,
                                                              crofton_depth_statistics* statistics);
 /* Returns a lower bound of the nearness of the listed triangles at a pixel of the last picture: the depth, negated

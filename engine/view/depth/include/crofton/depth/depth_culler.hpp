@@ -45,7 +45,8 @@ struct PictureView {
     // With several samples it is a limit for each.
     std::uint64_t work_limit = 0;
 
-    [[nodiscard]] bool has_samples() const { return samples == 1 || samples == 2 || samples == 4 || samples == 8; }
+    // Errors, with this item: a size or a number of samples out of range.
+    [[nodiscard]] Result<void> check(std::uint64_t item = kNoItem) const;
 };
 
 // A cluster with at least one triangle that may be visible at a sample. If bit k of `triangles` is set, draw triangle
