@@ -34,7 +34,7 @@ Result<void> check(std::span<const DepthObject> objects, const PictureView& view
 // `seen`: objects in the camera's picture.
 Result<void> check(const ShadowReceivers& receivers, std::size_t seen, const PictureView& map) {
     if (map.samples != 1) return fail(ErrorCode::out_of_range, kNoItem, "depth: a shadow map has 1 sample per texel");
-    if (!(receivers.radius >= 0.5f && receivers.radius <= ShadowReceivers::kMaxRadius))
+    if (!ShadowReceivers::has_radius(receivers.radius))
         return fail(ErrorCode::out_of_range, kNoItem, "depth: the radius of lookups is 0.5 to 1,024 texels");
     if (receivers.objects.size() != seen)
         return fail(ErrorCode::invalid_argument, kNoItem,
@@ -204,6 +204,7 @@ Result<std::span<const VisibleCluster>> DepthCuller::find_casters(std::span<cons
         return tl::unexpected(checked.error());
     const auto strips = seen.samples == 1 ? seen.walked() : std::span<const StripWalk>();
     state_->receivers.find({seen.frame, seen.sorted, strips}, receivers, map);
+    if (state_->receivers.is_empty()) objects = {};
     return state_->find(objects, map, state_->receivers.floors(), executor);
 }
 

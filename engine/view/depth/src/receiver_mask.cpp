@@ -126,6 +126,7 @@ void ReceiverMask::begin(const SeenPicture& seen, const ShadowReceivers& receive
                                        static_cast<std::uint32_t>(2.0f * reach));
     splits_left_ = kMaxSplits;
     everything_ = false;
+    empty_ = true;
 }
 
 void ReceiverMask::add_object(const DepthReceiver& receiver, const DepthObject& drawn,
@@ -261,6 +262,7 @@ bool ReceiverMask::is_seen(const Piece& piece, Projection p) const {
 void ReceiverMask::mark(const Projection& p) {
     if (p.covers_nothing()) return;
     if (p.is_unclear()) return mark_everything();
+    empty_ = false;
     for (std::uint32_t ty = p.y0 / kTile; ty <= p.y1 / kTile; ++ty)
         for (std::uint32_t tx = p.x0 / kTile; tx <= p.x1 / kTile; ++tx) {
             float& floor = floors_[std::size_t{ty} * columns_ + tx];
@@ -271,6 +273,7 @@ void ReceiverMask::mark(const Projection& p) {
 void ReceiverMask::mark_everything() {
     std::fill(floors_.begin(), floors_.end(), kNothing);
     everything_ = true;
+    empty_ = false;
 }
 
 }  // namespace crofton::depth

@@ -31,6 +31,7 @@ class ReceiverMask {
     // For each tile of the map, row by row: no point that is seen looks it up with a lesser nearness than this.
     // Infinity where none looks it up.
     [[nodiscard]] std::span<const float> floors() const { return floors_; }
+    [[nodiscard]] bool is_empty() const { return empty_; }  // nothing looks the map up
 
   private:
     // A part of a triangle of the object at hand.
@@ -64,7 +65,7 @@ class ReceiverMask {
     std::uint32_t columns_ = 0;
     std::int32_t small_ = 0;  // texels
     std::size_t splits_left_ = 0;
-    bool everything_ = false;
+    bool everything_ = false, empty_ = true;
     Vector<float> floors_;
     Vector<Piece> pieces_, next_;
     Vector<Cluster> boxes_;

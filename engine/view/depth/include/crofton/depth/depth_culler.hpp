@@ -64,11 +64,13 @@ struct ShadowReceivers {
     // Has answered find_visible() for the camera's picture. The objects and the meshes of that call must still be
     // there.
     const DepthCuller* seen = nullptr;
-    std::span<const DepthReceiver> objects;  // one for each object of that call
+    std::span<const DepthReceiver> objects = {};  // one for each object of that call
     // A lookup reads texels whose centres are at most this far from its point along each axis, in texels: 0.5 for the
     // nearest texel, 1 for a bilinear comparison, r + 1 for one in each of (2 r + 1)² texels. Add the texels by which
     // the shader moves the point, if it does.
     float radius = 1.0f;
+
+    [[nodiscard]] static bool has_radius(float texels) { return texels >= 0.5f && texels <= kMaxRadius; }
 };
 
 // A cluster with at least one triangle that may be visible at a sample. If bit k of `triangles` is set, draw triangle
