@@ -219,7 +219,7 @@ void walk_field(std::size_t count, bool walls, std::uint64_t work_limit, ThreadP
     }
     depth::DepthCuller culler;
     FrameTime alone, shared;
-    const depth::PictureView view{1280, 720, DepthRange::reversed_zero_to_one, work_limit};
+    const depth::PictureView view{.work_limit = work_limit};
     for (int r = 0; r < repeats; ++r) {
         alone.run([&] { (void)expect(culler.find_visible(objects, view), "culler"); });
         if (pool.concurrency() > 1)
