@@ -52,6 +52,12 @@ struct FrameTime {
     }
 };
 
+double mean_cpu(const std::vector<FrameTime>& times) {
+    double sum = 0.0;
+    for (const FrameTime& time : times) sum += time.cpu;
+    return 1e3 * sum / static_cast<double>(times.size());
+}
+
 template <class T>
 T expect(Result<T> result, const char* what) {
     if (result) return std::move(*result);
@@ -65,6 +71,7 @@ std::size_t bytes_of(const TriangleMesh& mesh) {
 
 struct Objects {
     std::vector<depth::DepthObject> list;
+    std::vector<scene::InstanceId> instances;  // of the list
     std::size_t triangles = 0;
 };
 
@@ -79,7 +86,7 @@ std::vector<Objects> objects_along(assets::SceneSource& source, const pipeline::
     for (const Camera& camera : cameras) {
         (void)expect(pipeline.run(camera), "frame");
         Objects& objects = frames.emplace_back();
-        std::vector<scene::InstanceId> visible;
+        std::vector<scene::InstanceId>& visible = objects.instances;
         for (scene::InstanceId i = 0; i < source.scene.instance_count(); ++i) {
             if (pipeline.verdicts()[i] == cull::Verdict::outside) continue;
             visible.push_back(i);
@@ -90,8 +97,62 @@ std::vector<Objects> objects_along(assets::SceneSource& source, const pipeline::
     return frames;
 }
 
+// What shadow maps of a sun need, of 2048 x 2048 texels: one over the scene, and one over what is near the camera.
+void cast_shadows(assets::SceneSource& source, const pipeline::SceneClusters& clusters, const Aabb& focus,
+                  const std::vector<Camera>& cameras, const std::vector<Objects>& frames,
+                  const depth::PictureView& picture, int repeats) {
+    const depth::PictureView map{2048, 2048};
+    const glm::dvec3 middle = 0.5 * (glm::dvec3(focus.min) + glm::dvec3(focus.max));
+    const double reach = 0.5 * glm::length(glm::dvec3(focus.max) - glm::dvec3(focus.min));
+    for (const double share : {1.0, 0.125}) {
+        std::vector<Camera> suns;
+        for (const Camera& camera : cameras) {
+            Camera sun;
+            sun.projection = Projection::orthographic;
+            sun.forward = glm::normalize(glm::dvec3(0.5, -1.0, 0.3));
+            sun.height = 2.0 * share * reach;
+            sun.aspect = 1.0;
+            const glm::dvec3 at =
+                share == 1.0 ? middle : camera.position + share * reach * glm::normalize(camera.forward);
+            sun.position = at - 2.0 * reach * sun.forward;
+            sun.near_distance = 0.01 * reach;
+            sun.far_distance = 4.0 * reach;
+            suns.push_back(sun);
+        }
+        const auto casters = objects_along(source, clusters, suns);
+        depth::DepthCuller culler, alone, with_receivers;
+        std::vector<FrameTime> by_light(frames.size()), by_receivers(frames.size());
+        std::size_t in_frustum = 0, listed_alone = 0, listed = 0;
+        for (std::size_t i = 0; i < frames.size(); ++i) {
+            (void)expect(culler.find_visible(frames[i].list, picture), "culler");
+            std::vector<depth::DepthObject> on_map;
+            pipeline::append_depth_objects(source.scene, clusters, source.one_sided, frames[i].instances, suns[i],
+                                           on_map);
+            std::vector<depth::DepthReceiver> receivers;
+            for (const depth::DepthObject& o : on_map) receivers.push_back({o.to_clip});
+            for (int r = 0; r < repeats; ++r) {
+                by_light[i].run([&] { (void)expect(alone.find_visible(casters[i].list, map), "map"); });
+                by_receivers[i].run([&] {
+                    (void)expect(with_receivers.find_casters(casters[i].list, map, {&culler, receivers, 2.0f}),
+                                 "casters");
+                });
+            }
+            in_frustum += casters[i].triangles;
+            listed_alone += alone.statistics().triangles_listed;
+            listed += with_receivers.statistics().triangles_listed;
+        }
+        const auto count = static_cast<double>(frames.size());
+        std::printf(
+            "%-28s %s: %8.0f in the frustum, %6.0f by the map's depth in %6.3f ms, %6.0f with receivers in "
+            "%6.3f ms CPU\n",
+            "", share == 1.0 ? "sun over the scene" : "sun near the camera", static_cast<double>(in_frustum) / count,
+            static_cast<double>(listed_alone) / count, mean_cpu(by_light), static_cast<double>(listed) / count,
+            mean_cpu(by_receivers));
+    }
+}
+
 void walk_street(const std::string& name, std::uint32_t instances, const depth::PictureView& view, ThreadPool& pool,
-                 int repeats) {
+                 bool shadows, int repeats) {
     auto source = expect(assets::load_scene(name, {.instances = instances}), name.c_str());
     source.scene.update();
     auto& executor = serial_executor();
@@ -133,6 +194,7 @@ void walk_street(const std::string& name, std::uint32_t instances, const depth::
     if (pool.concurrency() > 1)
         std::printf("%-28s %u threads: %6.3f ms, one: %6.3f ms\n", "", pool.concurrency(),
                     mean(shared, &FrameTime::wall), mean(alone, &FrameTime::wall));
+    if (shadows) cast_shadows(source, clusters, focus, cameras, frames, view, repeats);
 }
 
 // Boxes before a camera, all in its frustum. `walls`: every hundredth is one, and hides what is behind it.
@@ -218,11 +280,11 @@ int main(int argc, char** argv) {
         if (std::filesystem::exists(forest)) scenes.push_back(forest);
     }
     ThreadPool pool(threads);
-    for (const std::string& scene : scenes) walk_street(scene, 0, {1280, 720}, pool, repeats);
+    for (const std::string& scene : scenes) walk_street(scene, 0, {1280, 720}, pool, true, repeats);
     if (!all) return 0;
     constexpr std::uint32_t kMany = 100'000;
     std::printf("the town with %u objects: ", kMany);
-    walk_street("town", kMany, {1280, 720}, pool, repeats);
+    walk_street("town", kMany, {1280, 720}, pool, false, repeats);
     walk_field(kMany, true, 0, pool, repeats);
     walk_field(kMany, false, 0, pool, repeats);
     walk_field(kMany, false, 20'000, pool, repeats);

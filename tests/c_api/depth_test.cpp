@@ -259,6 +259,78 @@ TEST_SUITE("capi/depth") {
         CHECK(nearness == -std::numeric_limits<float>::infinity());
     }
 
+    TEST_CASE("C lists the same casters as C++, and refuses receivers that are not the camera's") {
+        const TriangleMesh mesh = wall(20, 3.0f);
+        const ClusteredMesh in_c = cut(mesh, 24);
+        const auto in_cpp =
+            crofton::depth::ClusteredMesh::cut(mesh.positions, mesh.indices, {.max_triangles = 24}).value();
+        crofton::Camera lamp;
+        lamp.position = {9, 5, 0};
+        lamp.forward = {-1, -0.6, -1.2};
+        const DepthCuller camera_culler = make_depth_culler(), light_culler = make_depth_culler();
+        crofton::depth::DepthCuller same_camera, same_light;
+        std::mt19937 random(5);
+        std::vector<crofton_depth_object> drawn, casters;
+        std::vector<crofton::depth::DepthObject> same_drawn, same_casters;
+        std::vector<crofton_depth_receiver> receivers;
+        std::vector<crofton::depth::DepthReceiver> same_receivers;
+        for (int i = 0; i < 20; ++i) {
+            const double z = -5.0 - static_cast<double>(random() % 20), x = static_cast<double>(random() % 9) - 4.0;
+            const glm::dmat4 place = glm::rotate(at(x, -1, z), static_cast<double>(i), glm::dvec3(0, 1, 0));
+            const glm::mat4 clip = to_clip(place), map(crofton::world_to_clip(lamp) * place);
+            drawn.push_back(object_of(in_c, clip)), casters.push_back(object_of(in_c, map));
+            same_drawn.push_back({&in_cpp, clip}), same_casters.push_back({&in_cpp, map});
+            crofton_depth_receiver receiver{{}, i % 7 == 0};
+            std::memcpy(receiver.to_map, &map[0][0], sizeof receiver.to_map);
+            receivers.push_back(receiver), same_receivers.push_back({map, i % 7 == 0});
+        }
+        const crofton_picture_view picture = picture_of(160, 90), size = picture_of(128, 128);
+        find(camera_culler, drawn, picture);
+        REQUIRE(same_camera.find_visible(same_drawn, {160, 90}));
+        crofton_depth_receivers given = crofton_default_depth_receivers();
+        CHECK((given.seen == nullptr && given.objects == nullptr && given.object_count == 0 && given.radius == 1.0));
+        given.seen = camera_culler.get();
+        given.objects = receivers.data();
+        given.object_count = receivers.size();
+        const crofton_visible_cluster* clusters = nullptr;
+        std::size_t count = 0;
+        auto statistics = sized<crofton_depth_statistics>();
+        const auto casters_of = [&](const crofton_depth_culler* seen) {
+            given.seen = seen;
+            return crofton_depth_culler_find_casters(light_culler.get(), casters.data(), casters.size(), &size, &given,
+                                                     nullptr, &clusters, &count, &statistics);
+        };
+        for (const double radius : {0.5, 1.0, 20.0}) {
+            given.radius = radius;
+            REQUIRE(casters_of(camera_culler.get()) == CROFTON_OK);
+            const auto expected =
+                same_light
+                    .find_casters(same_casters, {128, 128}, {&same_camera, same_receivers, static_cast<float>(radius)})
+                    .value();
+            REQUIRE(count == expected.size());
+            CHECK(count > 3);
+            CHECK(std::memcmp(clusters, expected.data(), count * sizeof *clusters) == 0);
+            CHECK(statistics.triangles_listed == same_light.statistics().triangles_listed);
+            float nearness = 0.0f;
+            REQUIRE(crofton_depth_culler_nearness(light_culler.get(), 127, 127, &nearness) == CROFTON_OK);
+            CHECK(nearness == same_light.nearness(127, 127));
+        }
+        CHECK(casters_of(nullptr) == CROFTON_BAD_HANDLE);
+        CHECK(casters_of(light_culler.get()) != CROFTON_OK);
+        given.radius = kNaN;
+        CHECK(casters_of(camera_culler.get()) == CROFTON_OUT_OF_RANGE);
+        given.radius = 1.0;
+        given.object_count = 19;
+        CHECK(casters_of(camera_culler.get()) == CROFTON_INVALID_ARGUMENT);
+        given.object_count = SIZE_MAX;
+        CHECK(casters_of(camera_culler.get()) == CROFTON_OUT_OF_RANGE);
+        given.object_count = 20;
+        given.size = 4;
+        CHECK(casters_of(camera_culler.get()) == CROFTON_WRONG_SIZE);
+        CHECK(crofton_depth_culler_find_casters(light_culler.get(), casters.data(), casters.size(), &size, nullptr,
+                                                nullptr, &clusters, &count, nullptr) == CROFTON_INVALID_ARGUMENT);
+    }
+
     TEST_CASE("defaults are those of C++, and a default object lacks its mesh") {
         const crofton_depth_object object = crofton_default_depth_object();
         const crofton_picture_view picture = crofton_default_picture_view();

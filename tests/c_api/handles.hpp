@@ -98,6 +98,14 @@ template <>
 inline crofton_picture_view sized() {
     return crofton_default_picture_view();
 }
+template <>
+inline crofton_shadow_receivers sized() {
+    return crofton_default_shadow_receivers();
+}
+template <>
+inline crofton_depth_receivers sized() {
+    return crofton_default_depth_receivers();
+}
 
 template <class Given>
 crofton_status look(const crofton_world* world, const Given& view, crofton_view_result* result) {

@@ -228,6 +228,59 @@ TEST_SUITE("capi/world_picture") {
         }
     }
 
+    TEST_CASE("a light lists what throws a shadow on what the camera sees, and needs that answer") {
+        const Walls s;
+        crofton_camera lamp = crofton_default_camera();
+        lamp.position[0] = 3;
+        lamp.fov_y = 2.0;
+        crofton_picture_view map = s.picture;
+        crofton_shadow_receivers receivers = crofton_default_shadow_receivers();
+        CHECK((receivers.size == sizeof receivers && receivers.seen == nullptr && receivers.radius == 1.0));
+        crofton_view_request request = request_of(lamp), of_camera = s.request();
+        request.picture = &map;
+        const ViewResultHandle seen = make_view_result(), result = make_view_result();
+        const auto view = [&](const crofton_view_request& asked, const ViewResultHandle& to) {
+            return crofton_world_view(s.world.get(), &asked, 1, nullptr, to.get());
+        };
+        REQUIRE(view(of_camera, seen) == CROFTON_OK);
+        REQUIRE(view(request, result) == CROFTON_OK);
+        const std::uint64_t all = info_of(result).triangles_listed;
+        request.receivers = &receivers;
+        CHECK(view(request, result) == CROFTON_BAD_HANDLE);
+        receivers.seen = seen.get();
+        REQUIRE(view(request, result) == CROFTON_OK);
+        // The small wall before the large one throws a shadow on it.
+        CHECK(info_of(result).triangles_listed > 0);
+        CHECK(info_of(result).triangles_listed <= all);
+        const auto ids = ids_of(result);
+        CHECK(std::count(ids.begin(), ids.end(), s.objects[1].index) == 1);
+        CHECK(std::count(ids.begin(), ids.end(), s.objects[2].index) == 0);
+        // A lamp behind the large wall shines on what the camera does not see.
+        lamp.position[2] = -15;
+        REQUIRE(view(request, result) == CROFTON_OK);
+        CHECK(info_of(result).triangles_listed == 0);
+        request.receivers = nullptr;
+        REQUIRE(view(request, result) == CROFTON_OK);
+        CHECK(info_of(result).triangles_listed > 0);
+        request.receivers = &receivers;
+        lamp.position[2] = 0;
+        receivers.radius = 0.0;
+        CHECK(view(request, result) == CROFTON_OUT_OF_RANGE);
+        receivers.radius = 1.0;
+        CHECK(view(request, seen) != CROFTON_OK);
+        of_camera.picture = nullptr;
+        REQUIRE(view(of_camera, seen) == CROFTON_OK);
+        CHECK(view(request, result) == CROFTON_INVALID_ARGUMENT);
+        // Seen from behind the lamp's back.
+        of_camera.picture = &s.picture;
+        crofton_camera away = s.camera;
+        away.forward[2] = 1;
+        of_camera.camera = &away;
+        REQUIRE(view(of_camera, seen) == CROFTON_OK);
+        REQUIRE(view(request, result) == CROFTON_OK);
+        CHECK(info_of(result).triangles_listed == 0);
+    }
+
     TEST_CASE("what does not hide is drawn through, and what is hidden comes back") {
         Walls s;
         for (const int i : {0, 1}) REQUIRE(world_set_occludes(s.world.get(), s.objects[i], 0) == CROFTON_OK);

@@ -122,6 +122,7 @@ void refuse_depth(Table& table) {
     CROFTON_REFUSE(crofton_clustered_mesh_get);
     CROFTON_REFUSE(crofton_depth_culler_destroy);
     CROFTON_REFUSE(crofton_depth_culler_find_visible);
+    CROFTON_REFUSE(crofton_depth_culler_find_casters);
     CROFTON_REFUSE(crofton_depth_culler_nearness);
 }
 
@@ -157,6 +158,7 @@ const std::set<std::string> kWithoutHandle = {
     "default_camera",
     "default_cast_options",
     "default_depth_object",
+    "default_depth_receivers",
     "default_draw_limits",
     "default_find_options",
     "default_fit_options",
@@ -167,6 +169,7 @@ const std::set<std::string> kWithoutHandle = {
     "default_picture_view",
     "default_region_object",
     "default_region_options",
+    "default_shadow_receivers",
     "default_view_matrix",
     "default_view_request",
     "default_world_options",

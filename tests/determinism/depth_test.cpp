@@ -63,4 +63,39 @@ TEST_SUITE("determinism/depth") {
             return digest.value();
         });
     }
+
+    TEST_CASE("casters whose shadows a camera sees") {
+        check_everywhere(0x18736007f476a8c1, [](Executor& executor) {
+            Random random(7);
+            const TriangleMesh mesh = hilly_grid(24, random);
+            const auto cut = depth::ClusteredMesh::cut(mesh.positions, mesh.indices).value();
+            Digest digest;
+            depth::DepthCuller camera_culler, light_culler;
+            for (int view = 0; view < 8; ++view) {
+                Camera camera, light;
+                camera.position = {random.uniform(-9, 9), 0.0, 0.0};
+                light.position = {random.uniform(-9, 9), 12.0, -15.0};
+                light.forward = {random.uniform(-0.5, 0.5), -1.0, -0.3};
+                light.fov_y = 1.8;
+                std::vector<depth::DepthObject> drawn, casters;
+                std::vector<depth::DepthReceiver> receivers;
+                for (int i = 0; i < 60; ++i) {
+                    const double x = random.uniform(-15, 15), y = random.uniform(-3, 3), z = random.uniform(-40, 2);
+                    // Some are so large that they are split.
+                    const double size = i % 20 == 0 ? 30.0 : random.uniform(0.5, 4.0);
+                    const glm::dmat4 place = glm::scale(glm::translate(glm::dmat4(1.0), {x, y, z}), glm::dvec3(size));
+                    const glm::mat4 to_map(world_to_clip(light) * place);
+                    drawn.push_back({&cut, glm::mat4(world_to_clip(camera) * place)});
+                    casters.push_back({&cut, to_map, i % 3 == 0, i % 7 != 0});
+                    receivers.push_back({to_map, i % 11 == 0});
+                }
+                (void)camera_culler.find_visible(drawn, {321, 181}, executor);
+                const auto found =
+                    light_culler.find_casters(casters, {500, 300}, {&camera_culler, receivers, 1.5f}, executor);
+                for (const depth::VisibleCluster& c : *found) digest.add(c.object).add(c.cluster).add(c.triangles);
+                for (std::uint32_t p = 0; p < 500 * 300; p += 17) digest.add(light_culler.nearness(p % 500, p / 500));
+            }
+            return digest.value();
+        });
+    }
 }

@@ -145,7 +145,7 @@ namespace Crofton {
             public IntPtr Occlusion, Limits, CandidateMask;
             public UIntPtr CandidateWords;
             public uint Conservative, TreeOrder;
-            public IntPtr Picture;
+            public IntPtr Picture, Receivers;
         }
 
         [StructLayout(LayoutKind.Sequential)]

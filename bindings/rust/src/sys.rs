@@ -335,6 +335,7 @@ pub struct ViewRequest {
     pub conservative: u32,
     pub tree_order: u32,
     pub picture: *const PictureView,
+    pub receivers: *const std::ffi::c_void,
 }
 
 #[repr(C)]

@@ -116,6 +116,18 @@ crofton_picture_view crofton_default_picture_view(void) {
     return result;
 }
 
+crofton_shadow_receivers crofton_default_shadow_receivers(void) {
+    auto result = sized<crofton_shadow_receivers>();
+    result.radius = double{ShadowReceivers().radius};
+    return result;
+}
+
+crofton_depth_receivers crofton_default_depth_receivers(void) {
+    auto result = sized<crofton_depth_receivers>();
+    result.radius = double{depth::ShadowReceivers().radius};
+    return result;
+}
+
 crofton_shape_description crofton_default_shape_description(void) {
     return sized<crofton_shape_description>();
 }

@@ -23,6 +23,7 @@ struct crofton_depth_culler {
     Header header;
     depth::DepthCuller culler{};
     Vector<depth::DepthObject> objects{};
+    Vector<depth::DepthReceiver> receivers{};
     std::uint32_t width = 0, height = 0;  // of the last picture
 };
 
@@ -36,6 +37,48 @@ crofton_status add_object(const crofton_depth_object& given, const char* functio
     std::copy_n(given.to_clip, 16, &object.to_clip[0][0]);
     objects.push_back(object);
     return CROFTON_OK;
+}
+
+// What both of a culler's questions are given, and where the answer goes.
+struct Asked {
+    const crofton_depth_object* objects;
+    std::size_t object_count;
+    const crofton_picture_view* picture;
+    const crofton_jobs* jobs;
+    const crofton_visible_cluster** clusters;
+    std::size_t* count;
+    crofton_depth_statistics* statistics;
+    const char* function;
+};
+
+crofton_status read(const Asked& asked, crofton_depth_culler& culler, depth::PictureView& view) {
+    const char* const function = asked.function;
+    CROFTON_CHECK(check_array(asked.objects, asked.object_count, function));
+    CROFTON_CHECK(check_pointer(asked.clusters, function));
+    CROFTON_CHECK(check_pointer(asked.count, function));
+    if (asked.statistics) CROFTON_CHECK(check_growing(asked.statistics, function));
+    CROFTON_CHECK(read_picture(asked.picture, function, view));
+    CROFTON_CHECK(check_jobs(asked.jobs, function));
+    culler.objects.clear();
+    for (std::size_t i = 0; i < asked.object_count; ++i) {
+        crofton_depth_object given;
+        CROFTON_CHECK(of_item(read_growing_at(asked.objects, i, function, given), i));
+        CROFTON_CHECK(of_item(add_object(given, function, culler.objects), i));
+    }
+    return CROFTON_OK;
+}
+
+void give(const Asked& asked, crofton_depth_culler& culler, const depth::PictureView& view,
+          std::span<const depth::VisibleCluster> found) {
+    culler.width = view.width;
+    culler.height = view.height;
+    *asked.clusters = reinterpret_cast<const crofton_visible_cluster*>(found.data());
+    *asked.count = found.size();
+    const depth::DepthStatistics& s = culler.culler.statistics();
+    if (asked.statistics)
+        write_growing({sizeof *asked.statistics, s.objects_listed, s.objects_asked, s.clusters_asked, s.clusters_drawn,
+                       s.triangles_drawn, s.triangles_listed},
+                      asked.statistics);
 }
 
 }  // namespace
@@ -102,31 +145,44 @@ crofton_status crofton_depth_culler_find_visible(crofton_depth_culler* culler, c
                                                  size_t* count, crofton_depth_statistics* statistics) {
     const ExclusiveUse use(culler, __func__);
     if (use.failed()) return use.status();
-    CROFTON_CHECK(check_array(objects, object_count, __func__));
-    CROFTON_CHECK(check_pointer(clusters, __func__));
-    CROFTON_CHECK(check_pointer(count, __func__));
-    if (statistics) CROFTON_CHECK(check_growing(statistics, __func__));
     depth::PictureView view;
-    CROFTON_CHECK(read_picture(picture, __func__, view));
-    CROFTON_CHECK(check_jobs(jobs, __func__));
-    culler->objects.clear();
-    for (std::size_t i = 0; i < object_count; ++i) {
-        crofton_depth_object given;
-        CROFTON_CHECK(of_item(read_growing_at(objects, i, __func__, given), i));
-        CROFTON_CHECK(of_item(add_object(given, __func__, culler->objects), i));
-    }
+    const Asked asked{objects, object_count, picture, jobs, clusters, count, statistics, __func__};
+    CROFTON_CHECK(read(asked, *culler, view));
     HostJobs executor(jobs);
     const auto found = culler->culler.find_visible(culler->objects, view, executor);
     if (!found) return report(found.error(), __func__);
-    culler->width = view.width;
-    culler->height = view.height;
-    *clusters = reinterpret_cast<const crofton_visible_cluster*>(found->data());
-    *count = found->size();
-    const depth::DepthStatistics& s = culler->culler.statistics();
-    if (statistics)
-        write_growing({sizeof *statistics, s.objects_listed, s.objects_asked, s.clusters_asked, s.clusters_drawn,
-                       s.triangles_drawn, s.triangles_listed},
-                      statistics);
+    give(asked, *culler, view, *found);
+    return CROFTON_OK;
+}
+
+crofton_status crofton_depth_culler_find_casters(crofton_depth_culler* culler, const crofton_depth_object* objects,
+                                                 size_t object_count, const crofton_picture_view* map,
+                                                 const crofton_depth_receivers* receivers, const crofton_jobs* jobs,
+                                                 const crofton_visible_cluster** clusters, size_t* count,
+                                                 crofton_depth_statistics* statistics) {
+    const ExclusiveUse use(culler, __func__);
+    if (use.failed()) return use.status();
+    crofton_depth_receivers given;
+    CROFTON_CHECK(read_growing(receivers, __func__, given));
+    const SharedUse use_seen(given.seen, __func__);
+    if (use_seen.failed()) return use_seen.status();
+    CROFTON_CHECK(check_array(given.objects, given.object_count, __func__));
+    depth::PictureView view;
+    const Asked asked{objects, object_count, map, jobs, clusters, count, statistics, __func__};
+    CROFTON_CHECK(read(asked, *culler, view));
+    culler->receivers.clear();
+    for (const crofton_depth_receiver& r : std::span(given.objects, given.object_count)) {
+        depth::DepthReceiver& receiver = culler->receivers.emplace_back();
+        std::copy_n(r.to_map, 16, &receiver.to_map[0][0]);
+        receiver.solid = r.solid != 0;
+    }
+    HostJobs executor(jobs);
+    const auto found = culler->culler.find_casters(
+        culler->objects, view,
+        {.seen = &given.seen->culler, .objects = culler->receivers, .radius = static_cast<float>(given.radius)},
+        executor);
+    if (!found) return report(found.error(), __func__);
+    give(asked, *culler, view, *found);
     return CROFTON_OK;
 }
 

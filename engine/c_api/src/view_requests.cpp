@@ -52,6 +52,19 @@ crofton_status read_camera(const crofton_camera* camera, const char* function, s
     return CROFTON_OK;
 }
 
+crofton_status read_receivers(const crofton_shadow_receivers* argument, const char* function,
+                              std::optional<ShadowReceivers>& result) {
+    if (!argument) return CROFTON_OK;
+    crofton_shadow_receivers given;
+    CROFTON_CHECK(read_growing(argument, function, given));
+    const SharedUse use(given.seen, function);
+    if (use.failed()) return use.status();
+    if (given.seen->of != crofton_view_result::Of::world)
+        return report(CROFTON_INVALID_ARGUMENT, function, "view: receivers need the answer to one view of a World");
+    result = ShadowReceivers{&given.seen->one, static_cast<float>(given.radius)};
+    return CROFTON_OK;
+}
+
 // What all requests have: limits, candidates, order and mode.
 template <class Request>
 crofton_status read_options(const crofton_view_request& given, const char* function, Request& request,
@@ -108,6 +121,7 @@ crofton_status capi::read_request(const crofton_view_request& given, const char*
     request.layers = given.layers;
     CROFTON_CHECK(read_occlusion(given.occlusion, function, request.occlusion));
     if (given.picture) CROFTON_CHECK(read_picture(given.picture, function, request.picture.emplace()));
+    CROFTON_CHECK(read_receivers(given.receivers, function, request.receivers));
     return read_options(given, function, request, limits);
 }
 

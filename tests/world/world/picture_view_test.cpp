@@ -5,11 +5,15 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <crofton/geometry/model_to_clip.hpp>
+#include <memory>
+#include <optional>
 #include <set>
 
 #include "../../box_mesh.hpp"
 #include "../../error_of.hpp"
 #include "../../view/depth/depth_scenes.hpp"
+#include "../../view/depth/shadow_check.hpp"
 
 namespace crofton::testing {
 namespace {
@@ -105,9 +109,126 @@ std::set<std::pair<std::uint32_t, std::uint32_t>> listed_in(const Town& town,
     return listed;
 }
 
+// As a renderer draws the town: the matrices that a World makes of a camera.
+std::vector<depth::DepthObject> drawn_by(const Town& town, const Camera& camera) {
+    const glm::dmat4 to_clip = view_to_clip(camera) * glm::dmat4(world_to_view_rotation(camera));
+    std::vector<depth::DepthObject> drawn;
+    for (const Town::Placed& p : town.placed)
+        drawn.push_back(
+            {&town.meshes[p.mesh].clusters,
+             crofton::detail::model_to_clip(to_clip, camera.position, p.transform.linear, p.transform.translation)});
+    return drawn;
+}
+
+Camera light_in(oracle::NearMisses& random) {
+    Camera light;
+    light.up = {0.3, 1, 0.2};
+    const double fx = random.number(-1, 1), fz = random.number(-1, 1), x = random.number(-9, 9);
+    light.forward = {fx, -1, fz};
+    if (random.index(2) == 0) {
+        light.projection = Projection::orthographic;
+        light.height = random.number(10, 60);
+        light.position = -50.0 * glm::normalize(light.forward);
+    } else {
+        light.position = {x, random.number(0.5, 12), 3};
+        light.fov_y = random.number(0.4, 2.0);
+    }
+    light.aspect = 1.0;
+    return light;
+}
+
 }  // namespace
 
 TEST_SUITE("world/picture_view") {
+    TEST_CASE("a light lists the casters without which a shadow on what a camera sees would change") {
+        ShadowCheck sum;
+        for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+            CAPTURE(seed);
+            oracle::NearMisses random(seed);
+            Town town = random_town(2 * seed + 1, random);
+            if (seed % 4 == 0) {  // things move
+                for (std::size_t i = 1; i < town.placed.size(); i += 3) {
+                    town.placed[i].transform = random_transform(random);
+                    REQUIRE(town.world.set_transform(town.placed[i].object, town.placed[i].transform));
+                }
+                REQUIRE(town.world.update());
+            }
+            Scene scene;
+            Roles roles;
+            for (const Town::Placed& p : town.placed) {
+                roles.drawn.push_back(static_cast<std::uint32_t>(scene.objects.size()));
+                scene.objects.push_back({&town.meshes[p.mesh], glm::dmat4(1.0)});
+            }
+            roles.casters = roles.drawn;
+            Camera camera = camera_in(random);
+            camera.aspect = 2.0;
+            const Camera light = light_in(random);
+            const depth::PictureView picture{160, 80}, map{128, 128};
+            const float radius = float(random.index(3)) + 0.5f;
+            ViewResult seen, casters, by_tree, all;
+            REQUIRE(town.world.view({.camera = camera, .picture = picture}, seen));
+            ViewRequest request{.camera = light, .picture = map, .receivers = ShadowReceivers{&seen, radius}};
+            REQUIRE(town.world.view(request, casters));
+            REQUIRE(town.world.view({.camera = light, .picture = map}, all));
+            CHECK(casters.picture_statistics().triangles_listed <= all.picture_statistics().triangles_listed);
+            const auto objects = drawn_by(town, camera), of_light = drawn_by(town, light);
+            std::vector<depth::DepthReceiver> receivers;
+            for (const depth::DepthObject& o : of_light) receivers.push_back({o.to_clip});
+            ShadowCheck c;
+            compare_shadows(scene, roles, {picture, objects}, {map, of_light}, {nullptr, receivers, radius},
+                            casters.triangles(), random, c);
+            CHECK(c.wrong == 0);
+            sum.add(c);
+            // In the tree's order, and as one of many views.
+            const auto same = [&](std::span<const depth::VisibleCluster> other) {
+                return listed_in(town, other) == listed_in(town, casters.triangles());
+            };
+            request.order = cull::ResultOrder::tree;
+            REQUIRE(town.world.view(request, by_tree));
+            CHECK(same(by_tree.triangles()));
+            const std::vector<ViewRequest> two = {{.camera = light, .order = cull::ResultOrder::tree}, request};
+            MultiViewResult many;
+            REQUIRE(town.world.view(two, many));
+            CHECK(same(many.triangles(1)));
+        }
+        CHECK(sum.shadows > 10'000);
+    }
+
+    TEST_CASE("an object that has only a box may be seen anywhere within it") {
+        World world;
+        const TriangleMesh plank = box_mesh({-0.5f, -0.1f, -0.5f}, {0.5f, 0.1f, 0.5f});
+        const MeshHandle mesh =
+            world.add_mesh({.positions = plank.positions, .indices = plank.indices, .clusters = true}).value();
+        const ObjectHandle roof =
+            world.add({.mesh = mesh, .transform = Transform{glm::dmat3(1.0), {0, 2, -9}}}).value();
+        const ObjectHandle box = world.add({.bound = Obb{{0, 0, -10}, glm::mat3(1.0f), glm::vec3(1.5f)}}).value();
+        (void)world.update();
+        Camera sun;
+        sun.projection = Projection::orthographic;
+        sun.position = {0, 20, -10};
+        sun.forward = {0, -1, 0};
+        sun.up = {0, 0, -1};
+        sun.height = 8;
+        sun.aspect = 1.0;
+        // Below the roof's edge, so that only the box is seen.
+        Camera camera;
+        camera.forward = {0, -0.15, -1};
+        camera.fov_y = 0.3;
+        ViewResult seen, casters;
+        REQUIRE(world.view({.camera = camera, .picture = depth::PictureView{160, 90}}, seen));
+        CHECK(std::equal(seen.ids().begin(), seen.ids().end(), &box.index, &box.index + 1));
+        const ViewRequest request{
+            .camera = sun, .picture = depth::PictureView{64, 64}, .receivers = ShadowReceivers{&seen}};
+        REQUIRE(world.view(request, casters));
+        CHECK(std::count(casters.ids().begin(), casters.ids().end(), roof.index) == 1);
+        CHECK(std::count(casters.ids().begin(), casters.ids().end(), box.index) == 1);
+        // Turned away, the camera sees nothing, and nothing is listed.
+        camera.forward = {0, 0, 1};
+        REQUIRE(world.view({.camera = camera, .picture = depth::PictureView{160, 90}}, seen));
+        REQUIRE(world.view(request, casters));
+        CHECK(casters.size() == 0);
+    }
+
     TEST_CASE("the triangles that own a pixel are listed, by objects in order, and what is behind walls is not") {
         std::uint64_t listed_sum = 0, total = 0;
         for (std::uint64_t seed = 1; seed <= 30; ++seed) {
@@ -357,6 +478,30 @@ TEST_SUITE("world/picture_view") {
                            {.matrix = ViewMatrix{world_to_clip(Camera{}), DepthRange::zero_to_one}, .picture = picture},
                            result))
                   .code == ErrorCode::invalid_argument);
+        ViewResult seen, plain;
+        REQUIRE(world.view({.camera = Camera{}, .picture = picture}, seen));
+        REQUIRE(world.view({.camera = Camera{}}, plain));
+        const auto code_of = [&](const ShadowReceivers& receivers, const std::optional<depth::PictureView>& map) {
+            const ViewRequest request{.camera = Camera{}, .picture = map, .receivers = receivers};
+            const Error error = error_of(world.view(request, result));
+            const auto of_many = world.view(std::vector<ViewRequest>(1, request), *std::make_unique<MultiViewResult>());
+            CHECK(error_of(of_many).code == error.code);
+            CHECK(error_of(of_many).item == 0);
+            return error.code;
+        };
+        World other;
+        ViewResult of_other;
+        REQUIRE(other.view({.camera = Camera{}, .picture = picture}, of_other));
+        CHECK(code_of({}, picture) == ErrorCode::invalid_argument);
+        CHECK(code_of({&plain}, picture) == ErrorCode::invalid_argument);
+        CHECK(code_of({&of_other}, picture) == ErrorCode::invalid_argument);
+        CHECK(code_of({&seen}, std::nullopt) == ErrorCode::invalid_argument);
+        CHECK(code_of({&seen, 0.25f}, picture) == ErrorCode::out_of_range);
+        CHECK(code_of({&seen, 2000.0f}, picture) == ErrorCode::out_of_range);
+        CHECK(code_of({&seen}, depth::PictureView{.samples = 2}) == ErrorCode::out_of_range);
+        CHECK(error_of(world.view({.camera = Camera{}, .picture = picture, .receivers = ShadowReceivers{&seen}}, seen))
+                  .code == ErrorCode::invalid_argument);
+        CHECK(seen.has_picture());
         MultiViewResult many;
         const std::vector<ViewRequest> two = {{.camera = Camera{}, .picture = picture},
                                               {.camera = Camera{}, .picture = depth::PictureView{0, 0}}};

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "depth_frame.hpp"
+#include "receiver_mask.hpp"
 #include "strip_walk.hpp"
 
 namespace crofton::depth {
@@ -27,6 +28,17 @@ Result<void> check(std::span<const DepthObject> objects, const PictureView& view
     return {};
 }
 
+// `seen`: objects in the camera's picture.
+Result<void> check(const ShadowReceivers& receivers, std::size_t seen, const PictureView& map) {
+    if (map.samples != 1) return fail(ErrorCode::out_of_range, kNoItem, "depth: a shadow map has 1 sample per texel");
+    if (!ShadowReceivers::has_radius(receivers.radius))
+        return fail(ErrorCode::out_of_range, kNoItem, "depth: the radius of lookups is 0.5 to 1,024 texels");
+    if (receivers.objects.size() != seen)
+        return fail(ErrorCode::invalid_argument, kNoItem,
+                    "depth: there must be one receiver for each object of the camera's picture");
+    return {};
+}
+
 }  // namespace
 
 Result<void> PictureView::check(std::uint64_t item) const {
@@ -39,6 +51,8 @@ Result<void> PictureView::check(std::uint64_t item) const {
 
 struct DepthCuller::State {
     DepthFrame frame;
+    ReceiverMask receivers;
+    std::uint32_t samples = 1;  // of a pixel
     Vector<StripWalk> strips;
     std::uint32_t strip_count = 0;  // of the last picture
     Vector<VisibleCluster> found, sorted;
@@ -46,6 +60,25 @@ struct DepthCuller::State {
     Vector<std::uint32_t> ends;
     Vector<std::uint8_t> looked_into;  // by object
     DepthStatistics statistics;
+
+    // Of objects and a view that are checked.
+    std::span<const VisibleCluster> find(std::span<const DepthObject> objects, const PictureView& view,
+                                         std::span<const float> floors, Executor& executor) {
+        const std::uint64_t limit = view.work_limit != 0 ? view.work_limit : ~std::uint64_t{0};
+        const unsigned threads = executor.concurrency();
+        samples = view.samples;
+        of_samples.clear();
+        DepthStatistics sum;
+        // nearness() is that of the last: the first sample.
+        for (std::uint32_t sample = samples; sample-- > 0;) {
+            frame.set(objects, view, sample, floors, executor);
+            // Which of the clusters are the first within the limit only one walk can tell.
+            if (!walk(threads == 1 ? 1 : kStripsPerThread * threads, limit, executor)) (void)walk(1, limit, executor);
+            if (samples > 1) add_samples(std::exchange(sum, {}));
+            sum = statistics;
+        }
+        return sorted;
+    }
 
     // Returns false if several strips did more together than the limit: what one walk would list is not known then.
     bool walk(std::uint32_t count, std::uint64_t limit, Executor& executor) {
@@ -160,20 +193,24 @@ DepthCuller& DepthCuller::operator=(DepthCuller&&) noexcept = default;
 Result<std::span<const VisibleCluster>> DepthCuller::find_visible(std::span<const DepthObject> objects,
                                                                   const PictureView& view, Executor& executor) {
     if (auto checked = check(objects, view); !checked) return tl::unexpected(checked.error());
-    State& s = *state_;
-    const std::uint64_t limit = view.work_limit != 0 ? view.work_limit : ~std::uint64_t{0};
-    const unsigned threads = executor.concurrency();
-    s.of_samples.clear();
-    DepthStatistics statistics;
-    // nearness() is that of the last: the first sample.
-    for (std::uint32_t sample = view.samples; sample-- > 0;) {
-        s.frame.set(objects, view, sample, executor);
-        // Which of the clusters are the first within the limit only one walk can tell.
-        if (!s.walk(threads == 1 ? 1 : kStripsPerThread * threads, limit, executor)) (void)s.walk(1, limit, executor);
-        if (view.samples > 1) s.add_samples(std::exchange(statistics, {}));
-        statistics = s.statistics;
-    }
-    return std::span<const VisibleCluster>(s.sorted);
+    return state_->find(objects, view, {}, executor);
+}
+
+Result<std::span<const VisibleCluster>> DepthCuller::find_casters(std::span<const DepthObject> objects,
+                                                                  const PictureView& map,
+                                                                  const ShadowReceivers& receivers,
+                                                                  Executor& executor) {
+    if (receivers.seen == nullptr || receivers.seen == this)
+        return fail(ErrorCode::invalid_argument, kNoItem,
+                    "depth: casters need another culler, with what the camera sees");
+    const State& seen = *receivers.seen->state_;
+    if (auto checked = check(objects, map); !checked) return tl::unexpected(checked.error());
+    if (auto checked = check(receivers, seen.frame.objects().size(), map); !checked)
+        return tl::unexpected(checked.error());
+    const auto strips = seen.samples == 1 ? seen.walked() : std::span<const StripWalk>();
+    state_->receivers.find({seen.frame, seen.sorted, strips}, receivers, map);
+    if (state_->receivers.is_empty()) objects = {};
+    return state_->find(objects, map, state_->receivers.floors(), executor);
 }
 
 const DepthStatistics& DepthCuller::statistics() const {

@@ -27,8 +27,9 @@ glm::vec2 standard_sample(std::uint32_t samples, std::uint32_t sample) {
 }  // namespace
 
 void DepthFrame::set(std::span<const DepthObject> objects, const PictureView& view, std::uint32_t sample,
-                     Executor& executor) {
+                     std::span<const float> floors, Executor& executor) {
     objects_ = objects;
+    floors_ = floors;
     set_picture(view, sample);
     perspective_ = std::any_of(objects.begin(), objects.end(), [](const DepthObject& o) {
         return o.to_clip[0][3] != 0.0f || o.to_clip[1][3] != 0.0f || o.to_clip[2][3] != 0.0f;

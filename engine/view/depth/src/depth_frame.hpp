@@ -18,10 +18,12 @@ class DepthFrame {
   public:
     static constexpr std::uint32_t kBins = 1024;
 
-    // Of one of the picture's samples.
-    void set(std::span<const DepthObject> objects, const PictureView& view, std::uint32_t sample, Executor& executor);
+    // Of one of the picture's samples. `floors`: none, or for each tile a nearness that only what is nearer changes.
+    void set(std::span<const DepthObject> objects, const PictureView& view, std::uint32_t sample,
+             std::span<const float> floors, Executor& executor);
 
-    [[nodiscard]] const PictureData& picture() const { return picture_; }  // without tiles
+    [[nodiscard]] const PictureData& picture() const { return picture_; }    // without tiles
+    [[nodiscard]] std::span<const float> floors() const { return floors_; }  // row by row, or none
     [[nodiscard]] std::span<const DepthObject> objects() const { return objects_; }
     [[nodiscard]] std::span<const Projection> projections() const { return projections_; }
     [[nodiscard]] ObjectData data_of(std::uint32_t object) const;
@@ -42,6 +44,7 @@ class DepthFrame {
     PictureData picture_{};
     bool perspective_ = true;
     std::span<const DepthObject> objects_;
+    std::span<const float> floors_;
     Vector<Projection> projections_;
     Vector<std::uint32_t> order_, unplaced_;
     std::array<std::uint32_t, kBins + 1> starts_{};

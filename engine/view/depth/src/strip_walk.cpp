@@ -3,6 +3,7 @@
 
 #include <hwy/cache_control.h>
 #include <algorithm>
+#include <cstddef>
 
 namespace crofton::depth {
 
@@ -32,6 +33,7 @@ void StripWalk::begin(std::uint32_t first_column, std::uint32_t end_column) {
     least_.assign(count + kTile, kNothing);
     floors_.assign(count + kTile, kNothing);
     written_.assign(count, 0);
+    if (!frame_->floors().empty()) raise_floors();
     tiles.pixels = pixels_.data(), tiles.least = least_.data(), tiles.floors = floors_.data();
     tiles.written = written_.data();
     first_.fill(kEnd);
@@ -39,6 +41,19 @@ void StripWalk::begin(std::uint32_t first_column, std::uint32_t end_column) {
     clusters_.clear();
     asked_.clear();
     untested_.clear();
+}
+
+// From the beginning, tiles are as near as the frame says.
+void StripWalk::raise_floors() {
+    const std::uint32_t columns = (picture_.tiles.width + kTile - 1) / kTile;
+    const std::uint32_t rows = (picture_.tiles.height + kTile - 1) / kTile;
+    for (std::uint32_t y = 0; y < rows; ++y) {
+        const std::span<const float> row =
+            frame_->floors().subspan(std::size_t{y} * columns + first_column_, picture_.tiles.columns);
+        const auto to = static_cast<std::ptrdiff_t>(std::size_t{y} * picture_.tiles.columns + first_column_);
+        std::copy(row.begin(), row.end(), floors_.begin() + to);
+        std::copy(row.begin(), row.end(), least_.begin() + to);
+    }
 }
 
 // Objects first: clusters come to this bin only while it is walked, or from nearer objects that reach as far.

@@ -46,6 +46,8 @@ class StripWalk {
     [[nodiscard]] bool has_column(std::uint32_t column) const {
         return column >= first_column_ && column < end_column_;
     }
+    // True if all samples of the rectangle that lie in the strip are nearer.
+    [[nodiscard]] bool hides(const Projection& projection) const { return is_hidden(picture_.tiles, projection); }
     // Of a pixel in the strip.
     [[nodiscard]] float nearness(std::uint32_t x, std::uint32_t y) const;
 
@@ -59,6 +61,7 @@ class StripWalk {
     };
 
     void begin(std::uint32_t first_column, std::uint32_t end_column);
+    void raise_floors();
     void walk_bin(std::uint32_t bin);
     void look_into(std::uint32_t object);
     void split(std::uint32_t object);

@@ -61,7 +61,18 @@ Result<void> check_picture(const ViewRequest& request, std::uint64_t item) {
     return request.picture->check(item);
 }
 
-void PictureView::find(const ViewRequest& request, const InFrustum& in_frustum, DrawnOf drawn_of, Executor& executor) {
+// Where objects lie in the shadow map that `view` draws: those of which something is seen.
+void PictureView::place_receivers(const PictureView& seen, const ViewMatrix& view, DrawnOf drawn_of) {
+    receivers_.assign(seen.objects_.size(), {});
+    for (std::size_t i = 0; i < receivers_.size(); ++i) {
+        if (seen.seen_[seen.places_[i]] == 0) continue;
+        const Drawn drawn = drawn_of(seen.object_ids_[i]);
+        receivers_[i] = {object_of(drawn, view).to_clip, drawn.clusters == nullptr};
+    }
+}
+
+void PictureView::find(const ViewRequest& request, const InFrustum& in_frustum, const PictureView* seen,
+                       DrawnOf drawn_of, Executor& executor) {
     const ViewMatrix view = matrix_of(request);
     const std::span<const std::uint32_t> ids = in_frustum.ids;
     // Ascending, so that the answer does not depend on the order that is asked for.
@@ -70,12 +81,22 @@ void PictureView::find(const ViewRequest& request, const InFrustum& in_frustum, 
     if (!std::is_sorted(ids.begin(), ids.end()))
         std::sort(places_.begin(), places_.end(), [&](std::uint32_t a, std::uint32_t b) { return ids[a] < ids[b]; });
     objects_.resize(ids.size());
+    object_ids_.resize(ids.size());
     constexpr std::size_t kGrain = 256;
     executor.parallel_for(ids.size(), kGrain, [&](std::size_t begin, std::size_t end, unsigned) {
-        for (std::size_t i = begin; i < end; ++i) objects_[i] = object_of(drawn_of(ids[places_[i]]), view);
+        for (std::size_t i = begin; i < end; ++i) {
+            object_ids_[i] = ids[places_[i]];
+            objects_[i] = object_of(drawn_of(object_ids_[i]), view);
+        }
     });
-    // Sizes and meshes are checked: nothing can fail.
-    const auto found = culler_.find_visible(objects_, *request.picture, executor);
+    if (seen != nullptr) place_receivers(*seen, view, drawn_of);
+    // Sizes, meshes and receivers are checked: nothing can fail.
+    const auto found =
+        seen == nullptr
+            ? culler_.find_visible(objects_, *request.picture, executor)
+            : culler_.find_casters(objects_, *request.picture,
+                                   {.seen = &seen->culler_, .objects = receivers_, .radius = request.receivers->radius},
+                                   executor);
     seen_.assign(ids.size(), 0);
     triangles_.clear();
     for (const depth::VisibleCluster& cluster : *found) {

@@ -29,8 +29,10 @@ class PictureView {
     };
     using DrawnOf = FunctionRef<Drawn(std::uint32_t id)>;
 
-    // Of what the frustum sees, in the order given. Requires a view that is checked.
-    void find(const ViewRequest& request, const InFrustum& in_frustum, DrawnOf drawn_of, Executor& executor);
+    // Of what the frustum sees, in the order given. `seen`: null, or what looks the picture up as a shadow map.
+    // Requires a view that is checked.
+    void find(const ViewRequest& request, const InFrustum& in_frustum, const PictureView* seen, DrawnOf drawn_of,
+              Executor& executor);
 
     [[nodiscard]] std::span<const depth::VisibleCluster> triangles() const { return triangles_; }
     // Of in_frustum: its places that are seen, in its order.
@@ -40,10 +42,14 @@ class PictureView {
     [[nodiscard]] const depth::DepthStatistics& statistics() const { return culler_.statistics(); }
 
   private:
+    void place_receivers(const PictureView& seen, const ViewMatrix& view, DrawnOf drawn_of);
+
     depth::DepthCuller culler_;
     Vector<depth::DepthObject> objects_;
-    Vector<std::uint32_t> places_;  // of objects_, in the list of what the frustum sees
-    Vector<std::uint8_t> seen_;     // by place
+    Vector<std::uint32_t> object_ids_;        // of objects_
+    Vector<depth::DepthReceiver> receivers_;  // of another's objects_
+    Vector<std::uint32_t> places_;            // of objects_, in the list of what the frustum sees
+    Vector<std::uint8_t> seen_;               // by place
     Vector<depth::VisibleCluster> triangles_;
     Vector<std::uint32_t> ids_;
     Vector<cull::Verdict> verdicts_;

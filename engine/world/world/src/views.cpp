@@ -122,8 +122,9 @@ void World::State::find_triangles(const ViewRequest& request, const world::Pictu
                                   world::OccludedView& result, Executor& executor) const {
     const world::TraceZone zone(options.trace, "view: list triangles");
     result.by_picture = true;
+    const world::PictureView* const seen = request.receivers ? &request.receivers->seen->occluded_->picture : nullptr;
     result.picture.find(
-        request, in_frustum,
+        request, in_frustum, seen,
         [&](std::uint32_t id) -> world::PictureView::Drawn {
             if (world::is_region_index(id)) return regions.drawn(id);
             const world::Object& object = table.objects[id];
@@ -174,9 +175,25 @@ void World::State::draw_and_ask(const occlude::OcclusionView& view, const Occlus
     world::trace_count(options.trace, "objects not hidden", result.visible.size());
 }
 
+Result<void> World::check_receivers(const ViewRequest& request, const ViewResult* visible, std::uint64_t item) const {
+    if (!request.receivers) return {};
+    const auto refuse = [&](const char* why) { return fail(ErrorCode::invalid_argument, item, why); };
+    const ViewResult* const seen = request.receivers->seen;
+    if (!request.picture) return refuse("view: receivers need a `picture`, the shadow map");
+    if (seen == nullptr || !seen->has_picture() || seen->names_ != &state_->table.names)
+        return refuse("view: receivers need the answer to a view of this World with a picture");
+    if (seen == visible) return refuse("view: a light's answer cannot replace that of its receivers");
+    if (request.picture->samples != 1)
+        return fail(ErrorCode::out_of_range, item, "view: a shadow map has 1 sample per texel");
+    if (!depth::ShadowReceivers::has_radius(request.receivers->radius))
+        return fail(ErrorCode::out_of_range, item, "view: the radius of lookups is 0.5 to 1,024 texels");
+    return {};
+}
+
 Result<void> World::view(const ViewRequest& request, ViewResult& visible, Executor& executor) const {
     const auto eye = eye_of(request, kNoItem);
     if (!eye) return tl::unexpected(eye.error());
+    if (auto good = check_receivers(request, &visible, kNoItem); !good) return good;
     view_own(request, *eye, visible, executor);
     if (!state_->regions.is_empty()) add_regions(request, eye->plain, visible, executor);
     return {};
@@ -222,6 +239,7 @@ Result<void> World::view(std::span<const ViewRequest> requests, MultiViewResult&
     for (std::size_t v = 0; v < requests.size(); ++v) {
         const auto eye = eye_of(requests[v], v);
         if (!eye) return tl::unexpected(eye.error());
+        if (auto good = check_receivers(requests[v], nullptr, v); !good) return good;
         eyes[v] = *eye;
         if (requests[v].order != requests[0].order)
             return fail(ErrorCode::invalid_argument, v, "view: the views of one call are listed in one order");

@@ -47,7 +47,24 @@ typedef struct crofton_depth_statistics {
     uint64_t triangles_listed;
 } crofton_depth_statistics;
 
+/* Where an object of a camera's picture lies in a light's shadow map. */
+typedef struct crofton_depth_receiver {
+    float to_map[16]; /* column-major; takes positions of the mesh to clip space of the map, as the shader does */
+    uint32_t solid;   /* 1: anything within the mesh's bound may be seen, and not its triangles only */
+} crofton_depth_receiver;
+
+/* What looks a shadow map up: the points of what a camera sees. */
+typedef struct crofton_depth_receivers {
+    size_t size;
+    const crofton_depth_culler* seen;      /* NULL: set it. It has answered crofton_depth_culler_find_visible for the
+                                              camera's picture; the meshes of that call must still be there */
+    const crofton_depth_receiver* objects; /* one for each object of that call */
+    size_t object_count;
+    double radius; /* 1; as in crofton_shadow_receivers */
+} crofton_depth_receivers;
+
 CROFTON_API crofton_depth_object crofton_default_depth_object(void);
+CROFTON_API crofton_depth_receivers crofton_default_depth_receivers(void);
 
 /* Copies a mesh and cuts it into clusters of up to `max_triangles`, at most CROFTON_MAX_CLUSTER_TRIANGLES. 0 chooses 16
  * for meshes of up to 1,000 triangles, 64 for those of 10,000 or more, and interpolates between. The item of an error
@@ -77,6 +94,15 @@ CROFTON_API crofton_status crofton_depth_culler_find_visible(crofton_depth_culle
                                                              const crofton_jobs* jobs,
                                                              const crofton_visible_cluster** clusters, size_t* count,
                                                              crofton_depth_statistics* statistics);
+/* Lists the triangles without which a shadow on what a camera sees would change; otherwise as
+ * crofton_depth_culler_find_visible. `objects` are the casters, with matrices to the clip space of the shadow map. Draw
+ * the listed triangles into the map: each lookup by a point of what the camera sees then gives the same as with all
+ * casters. This holds for comparisons with the point's depth, or one nearer to the light; the guide says what else the
+ * renderer must do. */
+CROFTON_API crofton_status crofton_depth_culler_find_casters(
+    crofton_depth_culler* culler, const crofton_depth_object* objects, size_t object_count,
+    const crofton_picture_view* map, const crofton_depth_receivers* receivers, const crofton_jobs* jobs,
+    const crofton_visible_cluster** clusters, size_t* count, crofton_depth_statistics* statistics);
 /* Returns a lower bound of the nearness of the listed triangles at a pixel of the last picture: the depth, negated
  * unless reversed, or minus infinity if no triangle is proved to cover the pixel. Row 0 is at the bottom.
  * CROFTON_OUT_OF_RANGE: not a pixel of that picture, or there was none. */

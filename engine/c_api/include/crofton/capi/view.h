@@ -80,6 +80,18 @@ typedef struct crofton_view_matrix {
     double origin[3];      /* 0, 0, 0 */
 } crofton_view_matrix;
 
+typedef struct crofton_view_result crofton_view_result; /* the answer of one to 32 views; keeps its memory */
+
+/* What a camera sees, for the view of a light. */
+typedef struct crofton_shadow_receivers {
+    size_t size;
+    const crofton_view_result* seen; /* NULL: set it. The answer to the camera's view alone, which had a picture; not
+                                        that of the light. The World must not have changed since */
+    double radius; /* 1; 0.5 to 1024. A lookup reads texels whose centres are at most this far from its point along each
+                      axis: 0.5 for the nearest texel, 1 for a bilinear comparison, r + 1 for one in each of (2 r + 1)^2
+                      texels */
+} crofton_shadow_receivers;
+
 /* A view's request. The call obeys every member that is set, or returns an error that names it. */
 typedef struct crofton_view_request {
     size_t size;
@@ -100,9 +112,10 @@ typedef struct crofton_view_request {
     const crofton_picture_view*
         picture; /* NULL, or instead of `occlusion`: for objects whose mesh has `clusters`, also lists the triangles
                     that this picture needs; other objects are listed if their boxes may be seen */
+    const crofton_shadow_receivers*
+        receivers; /* NULL, or with `picture`, which then is the shadow map of a light: lists only the triangles without
+                      which a shadow on what a camera sees would change */
 } crofton_view_request;
-
-typedef struct crofton_view_result crofton_view_result; /* the answer of one to 32 views; keeps its memory */
 
 /* Data of one view. Pointers are valid until the result's next view. */
 typedef struct crofton_view_info {
@@ -126,6 +139,7 @@ typedef struct crofton_view_info {
 
 CROFTON_API crofton_draw_limits crofton_default_draw_limits(void);
 CROFTON_API crofton_picture_view crofton_default_picture_view(void);
+CROFTON_API crofton_shadow_receivers crofton_default_shadow_receivers(void);
 CROFTON_API crofton_occlusion_options crofton_default_occlusion_options(void);
 CROFTON_API crofton_view_matrix crofton_default_view_matrix(void);
 CROFTON_API crofton_view_request crofton_default_view_request(void);

@@ -57,6 +57,15 @@ template <>
     return crofton_default_picture_view();
 }
 
+template <>
+[[nodiscard]] inline crofton_shadow_receivers default_of<crofton_shadow_receivers>() {
+    return crofton_default_shadow_receivers();
+}
+template <>
+[[nodiscard]] inline crofton_depth_receivers default_of<crofton_depth_receivers>() {
+    return crofton_default_depth_receivers();
+}
+
 // Copies what the caller's struct has; the other members of `copy` have their defaults.
 template <class Struct>
 [[nodiscard]] crofton_status read_growing(const Struct* argument, const char* function, Struct& copy) {

@@ -49,6 +49,31 @@ struct PictureView {
     [[nodiscard]] Result<void> check(std::uint64_t item = kNoItem) const;
 };
 
+class DepthCuller;
+
+// Where an object of a camera's picture lies in a light's shadow map.
+struct DepthReceiver {
+    glm::mat4 to_map{1.0f};  // takes model coordinates to clip coordinates of the map, as the shader does
+    // Set it if anything within the mesh's bound may be seen, and not its triangles only.
+    bool solid = false;
+};
+
+// What looks a shadow map up: the points of what a camera sees.
+struct ShadowReceivers {
+    static constexpr float kMaxRadius = 1024.0f;
+
+    // Has answered find_visible() for the camera's picture. The objects and the meshes of that call must still be
+    // there.
+    const DepthCuller* seen = nullptr;
+    std::span<const DepthReceiver> objects = {};  // one for each object of that call
+    // A lookup reads texels whose centres are at most this far from its point along each axis, in texels: 0.5 for the
+    // nearest texel, 1 for a bilinear comparison, r + 1 for one in each of (2 r + 1)² texels. Add the texels by which
+    // the shader moves the point, if it does.
+    float radius = 1.0f;
+
+    [[nodiscard]] static bool has_radius(float texels) { return texels >= 0.5f && texels <= kMaxRadius; }
+};
+
 // A cluster with at least one triangle that may be visible at a sample. If bit k of `triangles` is set, draw triangle
 // mesh.clusters()[cluster].first_triangle + k.
 struct VisibleCluster {
@@ -97,9 +122,27 @@ class DepthCuller {
                                                                        const PictureView& view,
                                                                        Executor& executor = serial_executor());
 
+    // Finds the triangles without which a shadow on what a camera sees would change. `objects` are the casters, with
+    // matrices to the clip coordinates of `map`.
+    //
+    // Draw the listed triangles into the map, or any set that contains them. Each lookup by a point of what the camera
+    // sees gives the same bits as with all casters: at each texel that it reads, the map has the same depth, or both
+    // depths are farther from the light than the point. This holds for comparisons with the point's depth, or one that
+    // is nearer to the light, as shaders with a bias compare; for renderers as above, without slope-scaled depth bias
+    // in the map; and for shaders that look up points of the triangles (docs/depth.md).
+    //
+    // Errors: as find_visible(); no culler in `receivers`, or this one; a number of its objects that is not that of the
+    // camera's; a radius out of [0.5, kMaxRadius]; a map with several samples.
+    [[nodiscard]] Result<std::span<const VisibleCluster>> find_casters(std::span<const DepthObject> objects,
+                                                                       const PictureView& map,
+                                                                       const ShadowReceivers& receivers,
+                                                                       Executor& executor = serial_executor());
+
     [[nodiscard]] const DepthStatistics& statistics() const;
 
-    // Returns a lower bound for the nearness of the listed triangles at a pixel, after the last call. Nearness is
+    // Returns a lower bound for the nearness of the listed triangles at a pixel, after the last call. After
+    // find_casters(), it may also be the least nearness at which a caster matters there: infinity where no point is
+    // looked up. Nearness is
     // depth, negated unless the range is reversed; minus infinity where no triangle surely covers the pixel. Row 0 is
     // at the bottom. Where a pixel has several samples, it is that of the first. Requires x < width, y < height.
     [[nodiscard]] float nearness(std::uint32_t x, std::uint32_t y) const;

@@ -208,6 +208,16 @@ struct ViewMatrix {
     glm::dvec3 origin{0.0};
 };
 
+class ViewResult;
+
+// What a camera sees, for the view of a light.
+struct ShadowReceivers {
+    // The answer to the camera's view, which had a picture; not the one that the light's answer goes to. The World must
+    // not have changed since.
+    const ViewResult* seen = nullptr;
+    float radius = 1.0f;  // as depth::ShadowReceivers::radius
+};
+
 // Describes a view for World::view.
 struct ViewRequest {
     // Where the view looks from: set a camera, a matrix or a volume.
@@ -226,6 +236,9 @@ struct ViewRequest {
     // false hide nothing. For a camera, `picture->depth` is the depth range of the renderer's projection. Cannot be
     // combined with `occlusion`.
     std::optional<depth::PictureView> picture = {};
+    // If set, `picture` is the shadow map of a light, whose camera or matrix the request has, and the view lists only
+    // the triangles without which a shadow on what a camera sees would change (docs/depth.md#shadow-maps).
+    std::optional<ShadowReceivers> receivers = {};
     // Leaves out objects that are too small or too far. Must live until the call returns. The limits by item and the
     // hysteresis are for the World's own objects; regions' objects have neither.
     const cull::DrawLimits* limits = nullptr;

@@ -206,7 +206,9 @@ class World {
     // query. Errors name what cannot be obeyed: no camera, matrix or volume, or two that contradict each other; a
     // camera or matrix that is not valid; a volume of more than 12 planes, or with one that is not finite; limits with
     // a hysteresis below 1, or neither 32 layer distances nor none; occlusion without an eye, or whose least cover is
-    // NaN; a depth buffer's size or a picture's out of its range; a picture beside occlusion, or without an eye.
+    // NaN; a depth buffer's size or a picture's out of its range; a picture beside occlusion, or without an eye;
+    // receivers without a picture, without the answer to a view with a picture of this World, with `visible` itself, or
+    // with a radius out of its range.
     Result<void> view(const ViewRequest& request, ViewResult& visible, Executor& executor = serial_executor()) const;
     // Answers up to 32 views: lists each object once, with a mask of the views that see it.
     //
@@ -281,6 +283,9 @@ class World {
   private:
     friend class world::RegionSolids;
     World(const WorldOptions& options, std::uint32_t first_generation);
+    // `visible`: where the answer goes; null: beside the receivers' for certain.
+    [[nodiscard]] Result<void> check_receivers(const ViewRequest& request, const ViewResult* visible,
+                                               std::uint64_t item) const;
     // Of the World's own objects.
     void view_own(const ViewRequest& request, const world::Eye& eye, ViewResult& visible, Executor& executor) const;
     [[nodiscard]] Result<void> view_own(std::span<const ViewRequest> requests, std::span<const world::Eye> eyes,
