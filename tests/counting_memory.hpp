@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Counts what the engine allocates while it lives, on any thread.
 #pragma once
+#include <algorithm>
 #include <atomic>
 #include <crofton/core/memory.hpp>
 #include <cstddef>
@@ -19,6 +20,11 @@ class CountingMemory {
     [[nodiscard]] std::size_t allocations() const { return allocations_; }
     [[nodiscard]] std::size_t bytes_in_use() const { return bytes_in_use_; }
     [[nodiscard]] std::size_t bytes_taken() const { return bytes_taken_; }  // of all allocations so far
+    // The lesser of what was taken and given back since both were so many: an array that is copied at once is in both.
+    [[nodiscard]] std::size_t bytes_replaced_since(std::size_t taken, std::size_t in_use) const {
+        const std::size_t taken_since = bytes_taken_ - taken;
+        return std::min(taken_since, in_use + taken_since - bytes_in_use_);
+    }
 
   private:
     static void* allocate(void* self, std::size_t bytes, std::size_t alignment) {

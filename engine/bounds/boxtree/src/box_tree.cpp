@@ -147,6 +147,7 @@ void BoxTree::keep_box(ItemId item, const Obb& box) {
 
 void BoxTree::refit() {
     Refit(*structure_).run();
+    items_->settle();
 }
 
 bool BoxTree::rebuild_step(std::size_t budget) {

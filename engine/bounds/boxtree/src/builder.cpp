@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <crofton/boxtree/items.hpp>
 #include <crofton/geometry/trigonometry.hpp>
 
 namespace crofton::boxtree {
@@ -40,8 +41,8 @@ Builder::Builder(const Aabb& scene, std::size_t items, const measure::Criterion&
     if (half_size_ > 1e-30) cells_per_unit_ = kCells / (2.0 * half_size_);
     cell_ = static_cast<float>(2.0 * half_size_ / cube_root(static_cast<double>(std::max<std::size_t>(items, 1))));
     result_.node_leaves = grain.node_leaves;
-    keys_.reserve(items);
-    keys_next_.reserve(items);
+    keys_.reserve(with_room(items));
+    keys_next_.reserve(with_room(items));
 }
 
 std::array<std::uint32_t, 3> Builder::cell_of(const glm::dvec3& center) const {
@@ -163,7 +164,7 @@ std::size_t Builder::find_crowding(std::size_t budget, std::span<const Obb> boxe
         place_all();
     } else {
         result_.order.reserve(keys_.size());
-        cluster_of_.reserve(boxes.size());
+        cluster_of_.reserve(with_room(boxes.size()));
         phase_ = Phase::gather;
     }
     return spent;

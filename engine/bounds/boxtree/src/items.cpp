@@ -21,9 +21,9 @@ Result<void> Items::assign(std::span<const Obb> boxes, std::span<const std::uint
         for (std::size_t i = count_certainly_valid(some.data(), some.size()); i < some.size(); ++i)
             if (auto valid = crofton::validate(some[i], begin + i); !valid) return valid;
         for (const Obb& box : some) centers.include(box.center);
-        boxes_.insert(boxes_.end(), some.begin(), some.end());
+        boxes_.append(some);
     }
-    layer_masks_.assign(layer_masks.begin(), layer_masks.end());
+    layer_masks_.append(layer_masks);
     layer_masks_.resize(boxes.size(), ~std::uint32_t{0});
     return {};
 }
@@ -32,20 +32,20 @@ Result<ItemId> Items::add(const Obb& box, std::uint32_t layer_mask) {
     const ItemId item = next_id();
     if (!free_ids_.empty()) {
         free_ids_.pop_back();
-        boxes_[item] = box;
-        layer_masks_[item] = layer_mask;
+        boxes_.set(item, box);
+        layer_masks_.set(item, layer_mask);
         return item;
     }
     if (item >= kMaxItems) return fail(ErrorCode::out_of_range, item, "box tree: more than 2^30 boxes");
-    make_room_for(boxes_, 1);
-    make_room_for(layer_masks_, 1);
-    boxes_.push_back(box);
-    layer_masks_.push_back(layer_mask);
+    boxes_.make_room(1);
+    layer_masks_.make_room(1);
+    boxes_.append(box);
+    layer_masks_.append(layer_mask);
     return item;
 }
 
 void Items::set_layers(ItemId item, std::uint32_t layer_mask) {
-    layer_masks_[item] = layer_mask;
+    layer_masks_.set(item, layer_mask);
     if (is_detached(item)) detached_layers_ &= layer_mask;
 }
 

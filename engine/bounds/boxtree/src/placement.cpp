@@ -17,18 +17,18 @@ namespace crofton::boxtree {
 void Placement::vacate(ItemId item) {
     const std::uint32_t slot = structure_.item_slots_[item];
     const LeafId l = slot / kWidth;
-    Leaf& leaf = leaves_[l];
+    Leaf& leaf = leaves_.edit(l);
     const std::uint32_t last = --leaf.count;
     structure_.leaf_counts_[l] = static_cast<std::uint8_t>(leaf.count);
     const ItemId moved = structure_.slot_items_[l * kWidth + last];
     if (moved != item) {
-        structure_.slot_items_[slot] = moved;
-        structure_.item_slots_[moved] = slot;
+        structure_.slot_items_.set(slot, moved);
+        structure_.item_slots_.set(moved, slot);
         structure_.write_item(moved);
     }
     clear_lane(leaf, last);
-    structure_.slot_items_[l * kWidth + last] = kNone;
-    structure_.item_slots_[item] = kNone;
+    structure_.slot_items_.set(l * kWidth + last, kNone);
+    structure_.item_slots_.set(item, kNone);
     invalidate_item_count(leaf.parent);
     structure_.contents_changed_ = true;
     structure_.marks_.mark(slot);
@@ -38,11 +38,11 @@ void Placement::place(ItemId item) {
     if (nodes_[0].count == 0) add_child(0, add_leaf() | kLeafBit);
     LeafId l = best_leaf(structure_.items_.boxes()[item]);
     if (leaves_[l].count == kWidth) split_leaf(l);  // half of its lanes are free then
-    Leaf& leaf = leaves_[l];
+    Leaf& leaf = leaves_.edit(l);
     const std::uint32_t slot = l * kWidth + leaf.count++;
     structure_.leaf_counts_[l] = static_cast<std::uint8_t>(leaf.count);
-    structure_.slot_items_[slot] = item;
-    structure_.item_slots_[item] = slot;
+    structure_.slot_items_.set(slot, item);
+    structure_.item_slots_.set(item, slot);
     structure_.write_item(item);
     structure_.leaf_radii_[l] = united(structure_.leaf_radii_[l], radius_range_of(structure_.items_.boxes()[item]));
     invalidate_item_count(leaf.parent);
@@ -51,15 +51,15 @@ void Placement::place(ItemId item) {
 
 LeafId Placement::add_leaf() {
     const auto fresh = static_cast<LeafId>(leaves_.size());
-    make_room_for(leaves_, 1);
+    leaves_.make_room(1);
     make_room_for(structure_.leaf_counts_, 1);
     make_room_for(structure_.leaf_radii_, 1);
-    make_room_for(structure_.slot_items_, kWidth);
-    leaves_.emplace_back();
-    clear(leaves_[fresh]);
+    structure_.slot_items_.make_room(kWidth);
+    leaves_.append(Leaf());
+    clear(leaves_.edit(fresh));
     structure_.leaf_counts_.push_back(0);
     structure_.leaf_radii_.push_back(kNoRadii);
-    structure_.slot_items_.resize(structure_.slot_items_.size() + kWidth, kNone);
+    structure_.slot_items_.append(kWidth, kNone);
     structure_.marks_.add_leaf();
     return fresh;
 }
@@ -171,15 +171,15 @@ void Placement::split_leaf(LeafId l) {
 }
 
 void Placement::make_leaf(LeafId l, std::span<const ItemId> items, NodeId parent, std::uint32_t lane_in_parent) {
-    Leaf& leaf = leaves_[l];
+    Leaf& leaf = leaves_.edit(l);
     clear(leaf);
     leaf.parent = parent;
     leaf.lane_in_parent = lane_in_parent;
-    for (unsigned lane = 0; lane < kWidth; ++lane) structure_.slot_items_[l * kWidth + lane] = kNone;
+    for (unsigned lane = 0; lane < kWidth; ++lane) structure_.slot_items_.set(l * kWidth + lane, kNone);
     for (const ItemId item : items) {
         const std::uint32_t slot = l * kWidth + leaf.count++;
-        structure_.slot_items_[slot] = item;
-        structure_.item_slots_[item] = slot;
+        structure_.slot_items_.set(slot, item);
+        structure_.item_slots_.set(item, slot);
     }
     structure_.leaf_counts_[l] = static_cast<std::uint8_t>(leaf.count);
     structure_.write_leaf_layers(l);
@@ -188,20 +188,21 @@ void Placement::make_leaf(LeafId l, std::span<const ItemId> items, NodeId parent
 }
 
 void Placement::link(NodeId parent, unsigned lane, std::uint32_t child) {
-    nodes_[parent].child[lane] = child;
+    nodes_.edit(parent).child[lane] = child;
     if (child & kLeafBit) {
-        leaves_[child & ~kLeafBit].parent = parent;
-        leaves_[child & ~kLeafBit].lane_in_parent = lane;
+        Leaf& leaf = leaves_.edit(child & ~kLeafBit);
+        leaf.parent = parent;
+        leaf.lane_in_parent = lane;
     } else {
-        nodes_[child].parent = parent;
-        nodes_[child].lane_in_parent = lane;
-        nodes_[parent].only_leaves = 0;
+        nodes_.edit(child).parent = parent;
+        nodes_.edit(child).lane_in_parent = lane;
+        nodes_.edit(parent).only_leaves = 0;
     }
 }
 
 void Placement::add_child(NodeId parent, std::uint32_t child) {
     while (nodes_[parent].count == kWidth) parent = split_node(parent);
-    Node& node = nodes_[parent];
+    Node& node = nodes_.edit(parent);
     node.count++;
     link(parent, node.count - 1, child);
     // The new child's leaves lie elsewhere in memory, so those below here, and above, are no longer consecutive.
@@ -241,11 +242,11 @@ NodeId Placement::split_node(NodeId n) {
         make_part(half, whole, radii, lanes, parent, lane_in_parent);
     };
     const auto fresh = static_cast<NodeId>(nodes_.size());
-    make_room_for(nodes_, 2);
+    nodes_.make_room(2);
     make_room_for(structure_.ranges_, 2);
     make_room_for(structure_.node_radii_, 2);
     if (n == 0) {
-        nodes_.resize(fresh + 2);
+        nodes_.append(2, Node());
         structure_.ranges_.resize(fresh + 2);
         structure_.node_radii_.resize(fresh + 2);
         make_half(0, fresh, 0, 0);
@@ -256,7 +257,7 @@ NodeId Placement::split_node(NodeId n) {
         structure_.refresh_node(0);
         return fresh;
     }
-    nodes_.emplace_back();
+    nodes_.append(Node());
     structure_.ranges_.emplace_back();
     structure_.node_radii_.emplace_back();
     make_half(0, n, whole.parent, whole.lane_in_parent);
@@ -272,7 +273,7 @@ void Placement::make_part(NodeId n, const Node& whole, const NodeRadii& radii, s
     std::uint32_t children[kWidth];
     for (std::size_t i = 0; i < lanes.size(); ++i) children[i] = whole.child[lanes[i]];
     make_node(n, {children, lanes.size()}, parent, lane_in_parent, whole.axes);
-    Node& part = nodes_[n];
+    Node& part = nodes_.edit(n);
     std::copy_n(whole.origin, 3, part.origin);
     part.unit = whole.unit;
     part.per_quantum = whole.per_quantum;
@@ -291,13 +292,14 @@ void Placement::make_part(NodeId n, const Node& whole, const NodeRadii& radii, s
 
 void Placement::make_node(NodeId n, std::span<const std::uint32_t> children, NodeId parent, unsigned lane_in_parent,
                           std::uint32_t axes) {
-    clear(nodes_[n]);
-    nodes_[n].axes = axes;
+    Node& node = nodes_.edit(n);
+    clear(node);
+    node.axes = axes;
     structure_.ranges_[n] = {};
-    nodes_[n].parent = parent;
-    nodes_[n].lane_in_parent = lane_in_parent;
-    nodes_[n].only_leaves = 1;
-    for (const std::uint32_t child : children) link(n, nodes_[n].count++, child);
+    node.parent = parent;
+    node.lane_in_parent = lane_in_parent;
+    node.only_leaves = 1;
+    for (const std::uint32_t child : children) link(n, node.count++, child);
 }
 
 // Brings the lanes up to date on the path from a changed leaf or node to the root. As in a refit, other lanes and the
@@ -338,7 +340,7 @@ void Placement::refresh_above_both(std::uint32_t first, std::uint32_t second) {
 // by what has changed. That is the bound of the highest node on the path from `first` whose bounds lie along the lane's
 // axes, or else of `first`.
 bool Placement::write_path_lane(Place above, std::uint32_t first, std::uint32_t child) {
-    Node& node = nodes_[above.node];
+    Node& node = nodes_.edit(above.node);
     const Axes& axes = structure_.axes_of(node);
     if (child == first || nodes_[child].axes == node.axes)
         return write_lane(node, above.lane, structure_.bounds_below(child, node.axes), axes);

@@ -45,8 +45,8 @@ class Placement {
     void invalidate_item_count(NodeId n);
 
     Structure& structure_;
-    Vector<Node>& nodes_;
-    Vector<Leaf>& leaves_;
+    GrowingVector<Node>& nodes_;
+    GrowingVector<Leaf>& leaves_;
 };
 
 }  // namespace crofton::boxtree

@@ -29,6 +29,7 @@ void Refit::run() {
         work_.nodes.swap(work_.parents);
     }
     structure_.contents_changed_ = false;
+    structure_.settle();
     if (!work_.leaves.empty()) structure_.marks_.finish_refit();
 }
 
@@ -65,9 +66,8 @@ void Refit::write_dirty_leaves(std::span<const LeafId> leaves) {
     CROFTON_ASSERT(leaves.size() <= kBatch, "too many leaves at once");
     for (const LeafId l : leaves)
         if (!structure_.marks_.has_few_changes(l)) many[many_count++] = l;
-    const Obb* boxes = structure_.items_.boxes().data();
     for (std::span<const LeafId> rest(many, many_count); !rest.empty(); rest = rest.subspan(1)) {
-        rest = rest.subspan(write_lanes(leaves_.data(), rest, structure_.slot_items_.data(), boxes));
+        rest = rest.subspan(structure_.write_leaves(rest));
         if (rest.empty()) break;
         structure_.rewrite_leaf(rest.front());
     }
@@ -91,7 +91,7 @@ void Refit::refit_node(NodeId n) {
 // Writes a child's bound into its lane of the node, with layers and radii if any have changed, and marks the node for
 // refitting. Where the node's frame does not take the bound, all lanes are written in a new frame.
 void Refit::set_child(NodeId n, unsigned lane, const Aabb& bounds, Vector<NodeId>& dirty) {
-    if (!write_lane(nodes_[n], lane, bounds, structure_.axes_of(nodes_[n]))) structure_.refresh_node(n);
+    if (!write_lane(nodes_.edit(n), lane, bounds, structure_.axes_of(nodes_[n]))) structure_.refresh_node(n);
     if (structure_.contents_changed_) structure_.refresh_contents(n, lane);
     std::uint64_t& word = work_.node_bits[n / 64];
     const std::uint64_t bit = std::uint64_t{1} << (n % 64);

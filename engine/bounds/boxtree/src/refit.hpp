@@ -20,8 +20,8 @@ class Refit {
     void set_child(NodeId n, unsigned lane, const Aabb& bounds, Vector<NodeId>& dirty);
 
     Structure& structure_;
-    Vector<Node>& nodes_;
-    Vector<Leaf>& leaves_;
+    GrowingVector<Node>& nodes_;
+    GrowingVector<Leaf>& leaves_;
     Structure::Scratch& work_;
 };
 

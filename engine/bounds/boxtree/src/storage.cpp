@@ -30,6 +30,15 @@ void find_detached(Items& items, const Structure& structure) {
         if (!structure.contains(item) && !(known[item / 64] >> item % 64 & 1)) items.set_detached(item, true);
 }
 
+template <class T>
+T* data_of(Vector<T>& array) {
+    return array.data();
+}
+template <class T>
+T* data_of(GrowingVector<T>& array) {
+    return array.edit_all();
+}
+
 }  // namespace
 
 // Lists the stored members, in order. Writing and reading share this list.
@@ -107,7 +116,7 @@ Result<BoxTree> BoxTree::deserialise(std::span<const std::byte> bytes, Trust tru
         std::size_t at = sizeof(header);
         TreeStorage::arrays(items, structure, header, [&](auto& array, std::uint64_t count) {
             array.resize(count);
-            if (count > 0) std::memcpy(static_cast<void*>(array.data()), bytes.data() + at, count * sizeof(array[0]));
+            if (count > 0) std::memcpy(static_cast<void*>(data_of(array)), bytes.data() + at, count * sizeof(array[0]));
             at += count * sizeof(array[0]);
         });
         structure.reset_marks();

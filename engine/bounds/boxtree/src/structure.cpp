@@ -22,10 +22,6 @@ std::uint64_t next_number() {
     return ++last;
 }
 
-std::size_t with_room(std::size_t size) {
-    return size + size / 16 + kWidth;
-}
-
 }  // namespace
 
 Structure::Structure(Items& items, const measure::Criterion& criterion, Orientation orientation)
@@ -88,7 +84,7 @@ void Structure::link_nodes(NodeId begin, NodeId end, const Topology& topology) {
 
 void Structure::init_node(NodeId n, const Topology& topology) {
     const Topology::NodeRecord& record = topology.nodes[n];
-    Node& node = nodes_[n];
+    Node& node = nodes_.edit(n);
     clear(node);
     ranges_[n] = record.leaves;
     node.count = record.count;
@@ -116,7 +112,7 @@ void Structure::fill_leaf(LeafId l, LeafId end, const Topology& topology, const 
             hwy::Prefetch(&item_slots_[item]);
         }
     }
-    Leaf& leaf = leaves_[l];
+    Leaf& leaf = leaves_.edit(l);
     clear(leaf);
     leaf.parent = record.parent;
     leaf.lane_in_parent = record.lane_in_parent;
@@ -124,8 +120,8 @@ void Structure::fill_leaf(LeafId l, LeafId end, const Topology& topology, const 
         const ItemId item = topology.order[record.first + i];
         if (current != nullptr && !current->contains(item)) continue;
         const std::uint32_t slot = l * kWidth + leaf.count++;
-        slot_items_[slot] = item;
-        item_slots_[item] = slot;
+        slot_items_.set(slot, item);
+        item_slots_.set(item, slot);
     }
     leaf_counts_[l] = static_cast<std::uint8_t>(leaf.count);
     write_leaf_layers(l);
@@ -146,11 +142,11 @@ void Structure::begin_steps(const Topology& topology) {
     axes_.resize(std::max(axes_.size(), topology.axes.size()));
     // With room for what changes will add: where items change so much that the tree is rebuilt, it will grow.
     reserve(with_room(topology.nodes.size()), with_room(topology.leaves.size()));
-    item_slots_.reserve(items_.size());
+    item_slots_.reserve(with_room(items_.size()));
 }
 
 void Structure::add_items(ItemId end) {
-    if (end > item_slots_.size()) item_slots_.resize(end, kNone);
+    if (end > item_slots_.size()) item_slots_.append(end - item_slots_.size(), kNone);
 }
 
 void Structure::add_nodes(NodeId end, const Topology& topology) {
@@ -171,7 +167,7 @@ void Structure::add_leaves(LeafId end, const Topology& topology, const Structure
 }
 
 void Structure::write_leaf_layers(LeafId l) {
-    Leaf& leaf = leaves_[l];
+    Leaf& leaf = leaves_.edit(l);
     leaf.layers_every = ~std::uint32_t{0};
     for (std::uint32_t lane = 0; lane < leaf.count; ++lane) {
         leaf.layers[lane] = items_.layer_masks()[slot_items_[l * kWidth + lane]];
@@ -197,7 +193,7 @@ void Structure::widen_leaf_radii(LeafId l, const Obb& box) {
 
 // Chooses a new frame for the leaf and writes all its boxes.
 void Structure::rewrite_leaf(LeafId l) {
-    Leaf& leaf = leaves_[l];
+    Leaf& leaf = leaves_.edit(l);
     Aabb centers;
     double longest = 0.0;
     for (std::uint32_t lane = 0; lane < leaf.count; ++lane) {
@@ -206,28 +202,40 @@ void Structure::rewrite_leaf(LeafId l) {
         longest = std::max(longest, longest_edge(box));
     }
     fit_frame(leaf, centers, longest);
-    [[maybe_unused]] const std::size_t written =
-        write_lanes(leaves_.data(), std::span(&l, 1), slot_items_.data(), items_.boxes().data());
+    [[maybe_unused]] const std::size_t written = write_leaves({&l, 1});
     CROFTON_ASSERT(written == 1, "a frame around boxes must take them");
+}
+
+// Writes the boxes of leaves from the first on, while their frames take them; returns how many leaves.
+std::size_t Structure::write_leaves(std::span<const LeafId> leaves) {
+    return write_lanes(leaves_.edit_some(leaves), leaves, slot_items().data(), items_.boxes().data());
+}
+
+// Goes on copying arrays that grow.
+void Structure::settle() {
+    nodes_.settle();
+    leaves_.settle();
+    slot_items_.settle();
+    item_slots_.settle();
 }
 
 // Writes an item's box and layers into its slot; all boxes in a new frame if the leaf's does not take it.
 void Structure::write_item(ItemId item) {
     const std::uint32_t slot = item_slots_[item];
-    write_layers(leaves_[slot / kWidth], slot % kWidth, items_.layer_masks()[item]);
-    if (!write_lane(leaves_[slot / kWidth], slot % kWidth, items_.boxes()[item])) rewrite_leaf(slot / kWidth);
+    write_layers(leaves_.edit(slot / kWidth), slot % kWidth, items_.layer_masks()[item]);
+    if (!write_lane(leaves_.edit(slot / kWidth), slot % kWidth, items_.boxes()[item])) rewrite_leaf(slot / kWidth);
 }
 
 // Writes the bounds, layers and radii of all lanes from the children.
 void Structure::refresh_node(NodeId n) {
     refresh_bounds(n);
     for (unsigned lane = 0; lane < nodes_[n].count; ++lane) copy_contents(n, lane);
-    join_layers(nodes_[n]);
+    join_layers(nodes_.edit(n));
 }
 
 // Writes the bounds of all lanes in a new frame.
 void Structure::refresh_bounds(NodeId n) {
-    Node& node = nodes_[n];
+    Node& node = nodes_.edit(n);
     Aabb bounds[kWidth], whole;
     for (std::uint32_t lane = 0; lane < node.count; ++lane) {
         bounds[lane] = bounds_below(node.child[lane], node.axes);
@@ -243,11 +251,11 @@ void Structure::refresh_bounds(NodeId n) {
 // Writes the layers and radii of one lane.
 void Structure::refresh_contents(NodeId n, unsigned lane) {
     copy_contents(n, lane);
-    join_layers(nodes_[n]);
+    join_layers(nodes_.edit(n));
 }
 
 void Structure::copy_contents(NodeId n, unsigned lane) {
-    Node& node = nodes_[n];
+    Node& node = nodes_.edit(n);
     const std::uint32_t child = node.child[lane];
     if (child & kLeafBit) {
         const Leaf& leaf = leaves_[child & ~kLeafBit];

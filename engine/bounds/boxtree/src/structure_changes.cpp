@@ -19,7 +19,7 @@ void prefetch_all(const T& value) {
 }  // namespace
 
 void Structure::reserve_item(ItemId item) {
-    if (item >= item_slots_.size()) make_room_for(item_slots_, 1);
+    if (item >= item_slots_.size()) item_slots_.make_room(1);
 }
 
 void Structure::update_box(ItemId item) {
@@ -31,7 +31,7 @@ void Structure::update_box(ItemId item) {
 
 void Structure::update_layers(ItemId item) {
     const std::uint32_t slot = item_slots_[item];
-    write_layers(leaves_[slot / kWidth], slot % kWidth, items_.layer_masks()[item]);
+    write_layers(leaves_.edit(slot / kWidth), slot % kWidth, items_.layer_masks()[item]);
     contents_changed_ = true;
     marks_.mark(slot);
 }
@@ -59,7 +59,8 @@ void Structure::move_found(std::span<const ItemId> items, std::span<const Obb> b
         const LeafId leaf = slots[i] / kWidth;
         if (items_.boxes()[items[i]].half_extents != boxes[i].half_extents) widen_leaf_radii(leaf, boxes[i]);
         items_.set_box(items[i], boxes[i]);
-        if (marks_.has_few_changes(leaf) && !write_lane(leaves_[leaf], slots[i] % kWidth, boxes[i])) rewrite_leaf(leaf);
+        if (marks_.has_few_changes(leaf) && !write_lane(leaves_.edit(leaf), slots[i] % kWidth, boxes[i]))
+            rewrite_leaf(leaf);
     }
 }
 

@@ -16,8 +16,6 @@ namespace {
 constexpr std::size_t kLeafGrain = 64;    // leaves a task
 constexpr std::size_t kBlockGrain = 4;    // blocks of leaves a task
 constexpr std::size_t kPairGrain = 2048;  // pairs a task
-// Items are looked at one by one while fewer than one in this many move: then both ways cost about the same.
-constexpr std::size_t kFewMovers = 8;
 
 }  // namespace
 
@@ -58,6 +56,7 @@ void Broadphase::State::bound_leaf(std::span<const Obb> boxes, std::size_t leaf,
 
 void Broadphase::State::refit(std::span<const Obb> boxes, Executor& executor) {
     for (BroadphaseWorker& worker : workers) worker.absent.clear();
+    tree.begin_bounds();
     executor.parallel_for(tree.leaf_count(), kLeafGrain, [&](std::size_t begin, std::size_t end, unsigned worker) {
         for (std::size_t leaf = begin; leaf < end; ++leaf) bound_leaf(boxes, leaf, workers[worker]);
     });

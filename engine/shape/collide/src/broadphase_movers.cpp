@@ -214,6 +214,7 @@ Result<void> Broadphase::State::update_few(std::span<const Obb> boxes, std::span
         std::sort(began.begin(), began.end());
         std::sort(ended.begin(), ended.end());
         pairs.note(began, ended);
+        table.settle();
     }
     statistics.box_pairs = table_is_current ? table.size() : pairs.get().size();
     statistics.rejected = static_cast<std::uint32_t>(tree.item_count() - tree.size());

@@ -127,8 +127,10 @@ void ItemTree::clear() {
 }
 
 void ItemTree::resize(std::size_t count) {
-    if (count > places_.capacity()) places_.reserve(count + count / kRoomPart + kBoxBlock);
-    places_.resize(count, kNowhere);
+    if (count > places_.size())
+        places_.append(count - places_.size(), kNowhere);
+    else if (count < places_.size())
+        places_.resize(count);
 }
 
 void ItemTree::Level::clear() {
@@ -151,6 +153,11 @@ void ItemTree::Level::reserve(std::size_t blocks) {
     extents.reserve(blocks);
 }
 
+void ItemTree::Level::settle() {
+    bounds.settle();
+    children.settle();
+}
+
 BoundTree ItemTree::view() const {
     BoundTree view{};
     for (std::size_t k = 0; k < level_count_; ++k) {
@@ -167,7 +174,7 @@ BoundTree ItemTree::view() const {
 }
 
 void ItemTree::arrange(std::span<const std::uint32_t> order) {
-    std::fill(places_.begin(), places_.end(), kNowhere);
+    places_.assign(places_.size(), kNowhere);
     size_ = order.size();
     std::size_t below = order.size(), k = 0;
     for (; k < 2 || below > 1; ++k) {
@@ -185,11 +192,11 @@ void ItemTree::arrange(std::span<const std::uint32_t> order) {
         level.marked.clear();
         if (blocks > 0) level.counts[blocks - 1] = static_cast<std::uint8_t>(below - (blocks - 1) * kBoxBlock);
         for (std::size_t n = 0; n < below; ++n) {
-            level.children[n] = k == 0 ? order[n] : static_cast<std::uint32_t>(n);
-            place_of(k, level.children[n]) = static_cast<std::uint32_t>(n);
+            level.children.set(n, k == 0 ? order[n] : static_cast<std::uint32_t>(n));
+            set_place(k, level.children[n], static_cast<std::uint32_t>(n));
         }
         for (std::size_t lane = below; lane < blocks * kBoxBlock; ++lane)
-            put_lane(kEmpty, lane % kBoxBlock, level.bounds[lane / kBoxBlock]);
+            put_lane(kEmpty, lane % kBoxBlock, level.bounds.edit(lane / kBoxBlock));
         below = blocks;
     }
     for (std::size_t above = k; above < kMaxLevels; ++above) levels_[above].clear();
@@ -199,7 +206,7 @@ void ItemTree::arrange(std::span<const std::uint32_t> order) {
 
 void ItemTree::clear_unused(std::size_t leaf) {
     for (std::size_t lane = levels_[0].counts[leaf]; lane < kBoxBlock; ++lane)
-        put_lane(kEmpty, lane, levels_[0].bounds[leaf]);
+        put_lane(kEmpty, lane, levels_[0].bounds.edit(leaf));
 }
 
 void ItemTree::bound_all() {
@@ -214,7 +221,7 @@ void ItemTree::bound_all() {
             for (std::size_t n = 0; n < count; ++n) {
                 if (level.counts[begin + n] == 0) continue;
                 const std::uint32_t place = level.parents[begin + n];
-                put_lane(unions[n], place % kBoxBlock, levels_[k + 1].bounds[place / kBoxBlock]);
+                put_lane(unions[n], place % kBoxBlock, levels_[k + 1].bounds.edit(place / kBoxBlock));
                 if (k > 0 || unions[n].low[0] > unions[n].high[0]) continue;
                 extent_ += static_cast<double>(extent_of(unions[n]));
                 remembered_ += static_cast<double>(level.extents[begin + n]);
@@ -252,8 +259,8 @@ std::uint32_t ItemTree::make_block(std::size_t level) {
         made.free.pop_back();
         return block;
     }
-    append(made.bounds, 1, BoundBlock());
-    append(made.children, kBoxBlock, std::uint32_t{0});
+    made.bounds.append(BoundBlock());
+    made.children.append(kBoxBlock, 0);
     append(made.parents, 1, std::uint32_t{0});
     append(made.counts, 1, std::uint8_t{0});
     append(made.is_marked, 1, std::uint8_t{0});
@@ -267,9 +274,9 @@ void ItemTree::fill(std::size_t level, std::uint32_t block, std::span<const Entr
     filled.counts[block] = static_cast<std::uint8_t>(entries.size());
     for (std::size_t lane = 0; lane < kBoxBlock; ++lane) {
         const bool used = lane < entries.size();
-        put_lane(used ? entries[lane].bounds : kEmpty, lane, filled.bounds[block]);
-        filled.children[block * kBoxBlock + lane] = used ? entries[lane].child : 0;
-        if (used) place_of(level, entries[lane].child) = static_cast<std::uint32_t>(block * kBoxBlock + lane);
+        put_lane(used ? entries[lane].bounds : kEmpty, lane, filled.bounds.edit(block));
+        filled.children.set(block * kBoxBlock + lane, used ? entries[lane].child : 0);
+        if (used) set_place(level, entries[lane].child, static_cast<std::uint32_t>(block * kBoxBlock + lane));
     }
 }
 
@@ -293,9 +300,9 @@ void ItemTree::add(std::size_t level, std::uint32_t block, const Entry& entry) {
     const std::size_t lane = to.counts[block];
     if (lane == kBoxBlock) return split(level, block, entry);
     ++to.counts[block];
-    put_lane(entry.bounds, lane, to.bounds[block]);
-    to.children[block * kBoxBlock + lane] = entry.child;
-    place_of(level, entry.child) = static_cast<std::uint32_t>(block * kBoxBlock + lane);
+    put_lane(entry.bounds, lane, to.bounds.edit(block));
+    to.children.set(block * kBoxBlock + lane, entry.child);
+    set_place(level, entry.child, static_cast<std::uint32_t>(block * kBoxBlock + lane));
     grow(level, block, entry.bounds);
 }
 
@@ -303,7 +310,7 @@ void ItemTree::add(std::size_t level, std::uint32_t block, const Entry& entry) {
 void ItemTree::grow(std::size_t level, std::uint32_t block, const LaneBounds& bounds) {
     for (std::size_t k = level; k + 1 < level_count_; ++k) {
         const std::uint32_t place = levels_[k].parents[block];
-        BoundBlock& above = levels_[k + 1].bounds[place / kBoxBlock];
+        BoundBlock& above = levels_[k + 1].bounds.edit(place / kBoxBlock);
         const LaneBounds before = lane_of(above, place % kBoxBlock);
         LaneBounds now = before;
         include(bounds, now);
@@ -367,7 +374,7 @@ void ItemTree::split(std::size_t level, std::uint32_t block, const Entry& entry)
         return fill(level + 1, root_, halves);
     }
     const std::uint32_t place = levels_[level].parents[block];
-    put_lane(halves[0].bounds, place % kBoxBlock, levels_[level + 1].bounds[place / kBoxBlock]);
+    put_lane(halves[0].bounds, place % kBoxBlock, levels_[level + 1].bounds.edit(place / kBoxBlock));
     grow(level + 1, place / kBoxBlock, halves[0].bounds);
     add(level + 1, place / kBoxBlock, halves[1]);
 }
@@ -383,7 +390,7 @@ void ItemTree::shrink(std::size_t level, std::uint32_t block) {
         LaneBounds now;
         bound_blocks(levels_[k].bounds.data(), &block, 1, &now);
         const std::uint32_t place = levels_[k].parents[block];
-        BoundBlock& above = levels_[k + 1].bounds[place / kBoxBlock];
+        BoundBlock& above = levels_[k + 1].bounds.edit(place / kBoxBlock);
         if (are_equal(now, lane_of(above, place % kBoxBlock))) return;
         put_lane(now, place % kBoxBlock, above);
         levels_[k].extents[block] = std::min(levels_[k].extents[block], extent_of(now));
@@ -398,12 +405,12 @@ void ItemTree::take(std::size_t level, std::uint32_t place) {
     const std::size_t last = --from.counts[block];
     if (place % kBoxBlock != last) {
         const std::uint32_t child = from.children[block * kBoxBlock + last];
-        put_lane(lane_of(from.bounds[block], last), place % kBoxBlock, from.bounds[block]);
-        from.children[place] = child;
-        place_of(level, child) = place;
+        put_lane(lane_of(from.bounds[block], last), place % kBoxBlock, from.bounds.edit(block));
+        from.children.set(place, child);
+        set_place(level, child, place);
     }
-    put_lane(kEmpty, last, from.bounds[block]);
-    from.children[block * kBoxBlock + last] = 0;
+    put_lane(kEmpty, last, from.bounds.edit(block));
+    from.children.set(block * kBoxBlock + last, 0);
     if (level + 1 == level_count_) return;
     const std::uint32_t above = from.parents[block];
     const bool has_siblings = levels_[level + 1].counts[above / kBoxBlock] > 1;
@@ -436,7 +443,7 @@ void ItemTree::put_orphans() {
 
 void ItemTree::remove(std::uint32_t item) {
     take(0, places_[item]);
-    places_[item] = kNowhere;
+    places_.set(item, kNowhere);
     --size_;
     put_orphans();
 }
@@ -459,7 +466,7 @@ void ItemTree::fetch_leaf(std::uint32_t item) const {
 
 void ItemTree::move(std::uint32_t item, const LaneBounds& bounds) {
     const std::uint32_t place = places_[item];
-    put_lane(bounds, place % kBoxBlock, levels_[0].bounds[place / kBoxBlock]);
+    put_lane(bounds, place % kBoxBlock, levels_[0].bounds.edit(place / kBoxBlock));
     mark(0, place / kBoxBlock);
 }
 
@@ -473,7 +480,7 @@ void ItemTree::bound_marked() {
             bound_blocks(level.bounds.data(), level.marked.data() + begin, count, unions);
             for (std::size_t n = 0; n < count; ++n) {
                 const std::uint32_t place = level.parents[level.marked[begin + n]];
-                BoundBlock& above = levels_[k + 1].bounds[place / kBoxBlock];
+                BoundBlock& above = levels_[k + 1].bounds.edit(place / kBoxBlock);
                 if (are_equal(unions[n], lane_of(above, place % kBoxBlock))) continue;
                 put_lane(unions[n], place % kBoxBlock, above);
                 float& extent = level.extents[level.marked[begin + n]];
@@ -517,7 +524,9 @@ void ItemTree::settle(std::span<const std::uint32_t> moved) {
     for (Level& level : levels_) {
         for (const std::uint32_t block : level.marked) level.is_marked[block] = 0;
         level.marked.clear();
+        level.settle();
     }
+    places_.settle();
 }
 
 }  // namespace crofton::collide

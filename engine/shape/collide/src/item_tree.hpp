@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A tree over bounds that items come into, move in and leave one at a time.
 #pragma once
+#include <crofton/core/growing_vector.hpp>
 #include <crofton/core/memory.hpp>
 #include <span>
 
@@ -28,9 +29,11 @@ class ItemTree {
     void arrange(std::span<const std::uint32_t> order);
     [[nodiscard]] std::size_t leaf_count() const { return levels_[0].counts.size(); }  // free ones too
     [[nodiscard]] std::span<const std::uint32_t> items_of(std::size_t leaf) const {
-        return {levels_[0].children.data() + leaf * kBoxBlock, levels_[0].counts[leaf]};
+        return levels_[0].children.view().subspan(leaf * kBoxBlock, levels_[0].counts[leaf]);
     }
-    [[nodiscard]] BoundBlock& leaf(std::size_t leaf) { return levels_[0].bounds[leaf]; }
+    // Before all leaves get bounds: then several threads may write into different ones.
+    void begin_bounds() { levels_[0].bounds.edit_all(); }
+    [[nodiscard]] BoundBlock& leaf(std::size_t leaf) { return levels_[0].bounds.edit(leaf); }
     // Empties the bounds of the leaf's lanes without items.
     void clear_unused(std::size_t leaf);
     // Bounds of all blocks anew, from the leaves'.
@@ -51,13 +54,15 @@ class ItemTree {
   private:
     static constexpr std::uint32_t kNowhere = ~std::uint32_t{0};
     struct Level {
-        Vector<BoundBlock> bounds;
-        Vector<std::uint32_t> children, parents;  // as in BoundTree
+        GrowingVector<BoundBlock> bounds;
+        GrowingVector<std::uint32_t> children;  // as in BoundTree
+        Vector<std::uint32_t> parents;          // likewise
         Vector<std::uint8_t> counts, is_marked;
         Vector<float> extents;               // of a block's bounds, but for what moves have added since it was made
         Vector<std::uint32_t> free, marked;  // the second: bounds have changed
         void clear();
         void reserve(std::size_t blocks);
+        void settle();
     };
     // A child and its bounds, which belong into a block of the level.
     struct Entry {
@@ -66,8 +71,12 @@ class ItemTree {
         LaneBounds bounds;
     };
 
-    [[nodiscard]] std::uint32_t& place_of(std::size_t level, std::uint32_t child) {
+    [[nodiscard]] std::uint32_t place_of(std::size_t level, std::uint32_t child) const {
         return level == 0 ? places_[child] : levels_[level - 1].parents[child];
+    }
+    void set_place(std::size_t level, std::uint32_t child, std::uint32_t place) {
+        if (level == 0) return places_.set(child, place);
+        levels_[level - 1].parents[child] = place;
     }
     [[nodiscard]] LaneBounds bounds_of(std::size_t level, std::uint32_t block) const;
     [[nodiscard]] bool is_loose(std::size_t level, std::uint32_t block) const;
@@ -88,7 +97,7 @@ class ItemTree {
     Level levels_[kMaxLevels];
     std::size_t level_count_ = 2, size_ = 0;
     std::uint32_t root_ = 0;
-    Vector<std::uint32_t> places_;  // by item: 16 times its leaf, and the lane there
+    GrowingVector<std::uint32_t> places_;  // by item: 16 times its leaf, and the lane there
     Vector<Entry> orphans_, escaped_;
     Vector<std::uint32_t> loose_;
     double extent_ = 0.0, remembered_ = 0.0;  // of the leaves, as of bound_all()

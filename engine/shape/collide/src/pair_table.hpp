@@ -3,7 +3,7 @@
 #pragma once
 #include <hwy/cache_control.h>
 #include <crofton/collide/narrow_phase.hpp>
-#include <crofton/core/memory.hpp>
+#include <crofton/core/growing_vector.hpp>
 #include <cstdint>
 #include <span>
 
@@ -21,6 +21,11 @@ class PairTable {
 
     void add(const IdPair& pair);
     void remove(std::uint32_t entry);
+    // Goes on copying arrays that grow.
+    void settle() {
+        entries_.settle();
+        first_.settle();
+    }
     // Calls visit(partner, entry) for each pair of an item, in no order. The table must not change meanwhile.
     template <class Visit>
     void visit(std::uint32_t item, Visit visit) const {
@@ -39,9 +44,9 @@ class PairTable {
     struct Entry {
         std::uint32_t item[2], next[2], previous[2];
     };
-    Vector<Entry> entries_;
-    Vector<std::uint32_t> first_;  // by item: a link
-    std::uint32_t free_ = kNone;   // entries, through next[0]
+    GrowingVector<Entry> entries_;
+    GrowingVector<std::uint32_t> first_;  // by item: a link
+    std::uint32_t free_ = kNone;          // entries, through next[0]
     std::size_t size_ = 0;
 };
 

@@ -52,6 +52,9 @@ Obb no_box() {
     return box;
 }
 
+// Of what is no collider.
+constexpr collide::CollisionFilter kInNoPair{0, 0};
+
 bool comes_before(const Contact& a, const IdPair& b) {
     return IdPair{a.first.object.index, a.second.object.index} < b;
 }
@@ -63,38 +66,47 @@ ContactFinder::ContactFinder(const WorldOptions& options)
 
 void ContactFinder::note_colliders(const ObjectTable& table, SpatialIndex& index, const scene::Scene& scene,
                                    const ObjectShapes& shapes_of, const PairChanges& changes) {
-    resize(filters_, index.size());
-    if (has_own_boxes_) resize(boxes_, index.size(), no_box());
+    if (index.size() > filters_.size()) filters_.append(index.size() - filters_.size(), kInNoPair);
+    if (has_own_boxes_ && index.size() > boxes_.size()) boxes_.append(index.size() - boxes_.size(), no_box());
     moved_.clear();
     for (const auto items : {index.moved_items(), index.member_items(), std::span<const ItemId>(changes.objects)})
         moved_.insert(moved_.end(), items.begin(), items.end());
     for (const ItemId item : moved_) {
         const Object& object = table.objects[item];
-        filters_[item] = {index.layers(item), object.collides_with};
-        const bool collides = object.alive && object.collides_with != 0 && index.is_placed(item) &&
-                              !shapes_of.is_unbounded(item) && filters_[item].layers != 0;
+        const collide::CollisionFilter filter{index.layers(item), object.collides_with};
+        const bool is_unbounded = shapes_of.is_unbounded(item);
+        const bool collides =
+            object.alive && filter.collides_with != 0 && index.is_placed(item) && !is_unbounded && filter.layers != 0;
+        filters_.set(item, collides ? filter : kInNoPair);
         if (!collides) {
+            if (is_unbounded && index.is_placed(item)) take_own_boxes(index);
             note_box(item, nullptr, index);
             continue;
         }
         const Obb box = shapes_of.collider_box(item, object, index.box(item), scene, options_.contact_margin / 2.0);
         note_box(item, &box, index);
     }
+    // The broadphase looks at all objects then, also at those that it is not told of.
+    if (!has_idle_ || moved_.size() <= index.size() / collide::Broadphase::kFewMovers) return;
+    take_own_boxes(index);
+    has_idle_ = false;
+    for (ItemId item = 0; item < filters_.size(); ++item)
+        if (filters_[item].collides_with == 0) boxes_.set(item, no_box());
+}
+
+void ContactFinder::take_own_boxes(const SpatialIndex& index) {
+    if (std::exchange(has_own_boxes_, true)) return;
+    boxes_.reserve(index.size() + index.size() / 16);
+    boxes_.append(index.kept_boxes());
 }
 
 // nullptr: the object is no collider.
 void ContactFinder::note_box(ItemId item, const Obb* box, SpatialIndex& index) {
-    const bool is_index_box = box != nullptr && have_same_bits(*box, index.box(item));
-    if (!has_own_boxes_ && !is_index_box && index.is_placed(item)) {
-        boxes_.assign(index.kept_boxes().begin(), index.kept_boxes().end());
-        has_own_boxes_ = true;
-    }
-    if (has_own_boxes_)
-        boxes_[item] = box != nullptr ? *box : no_box();
-    else if (box != nullptr)
-        index.keep_box(item, *box);
-    else
-        index.keep_no_box(item);
+    if (!has_own_boxes_ && box != nullptr && !have_same_bits(*box, index.box(item))) take_own_boxes(index);
+    if (has_own_boxes_) return boxes_.set(item, box != nullptr ? *box : no_box());
+    if (box != nullptr) return index.keep_box(item, *box);
+    index.keep_no_box(item);
+    has_idle_ |= index.is_placed(item);
 }
 
 void ContactFinder::note_pairs(const ObjectTable& table, const PairChanges& changes) {
@@ -360,8 +372,10 @@ Result<void> ContactFinder::update(const ObjectTable& table, SpatialIndex& index
         return meet({table.objects[a], index.box(a), shapes_of.has(a)},
                     {table.objects[b], index.box(b), shapes_of.has(b)});
     };
-    const std::span<const Obb> boxes = has_own_boxes_ ? std::span<const Obb>(boxes_) : index.kept_boxes();
-    Result<void> found = broadphase_.update_moved(boxes, moved_, meet_by_id, filters_, executor);
+    const std::span<const Obb> boxes = has_own_boxes_ ? boxes_.view() : index.kept_boxes();
+    Result<void> found = broadphase_.update_moved(boxes, moved_, meet_by_id, filters_.view(), executor);
+    boxes_.settle();
+    filters_.settle();
     note_pairs(table, changes);
     if (!options_.contacts) return found;
     const auto touched = changes.all_contacts ? broadphase_.pairs() : broadphase_.tested();
@@ -373,6 +387,8 @@ Result<void> ContactFinder::update(const ObjectTable& table, SpatialIndex& index
 
 void ContactFinder::release_scratch() {
     release(moved_, began_pairs_, ended_pairs_, touched_, touches_, workers_, ended_before_, added_);
+    boxes_.finish();
+    filters_.finish();
     broadphase_.release_scratch();
 }
 

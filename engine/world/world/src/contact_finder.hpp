@@ -2,6 +2,7 @@
 // Which objects meet, and where: all pairs of boxes, then each pair's own shapes.
 #pragma once
 #include <crofton/collide/broadphase.hpp>
+#include <crofton/core/growing_vector.hpp>
 #include <crofton/core/sorted_edits.hpp>
 #include <crofton/world/world.hpp>
 
@@ -116,6 +117,7 @@ class ContactFinder {
     void note_colliders(const ObjectTable& table, SpatialIndex& index, const scene::Scene& scene,
                         const ObjectShapes& shapes_of, const PairChanges& changes);
     void note_box(ItemId item, const Obb* box, SpatialIndex& index);
+    void take_own_boxes(const SpatialIndex& index);
     void note_pairs(const ObjectTable& table, const PairChanges& changes);
     void find_contacts(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene, Shapes& shapes,
                        const ObjectShapes& shapes_of, Executor& executor);
@@ -135,11 +137,12 @@ class ContactFinder {
 
     WorldOptions options_;
     collide::Broadphase broadphase_;  // its items are the objects; those that are no colliders have no valid box
-    // The broadphase's boxes, once one is not the index's: that of an object that collides with nothing, or whose shape
-    // needs a wider box. Until then the broadphase reads SpatialIndex::kept_boxes(), which saves the memory.
-    Vector<Obb> boxes_;
-    bool has_own_boxes_ = false;
-    Vector<collide::CollisionFilter> filters_;
+    // The broadphase's boxes, once a shape needs a wider box than the index's, or many objects have been looked at of
+    // which one collides with nothing. Until then the broadphase reads SpatialIndex::kept_boxes(), which saves memory
+    // and copying: what collides with nothing is kept by its filter from being in a pair.
+    GrowingVector<Obb> boxes_;
+    bool has_own_boxes_ = false, has_idle_ = false;  // the second: boxes of objects that collide with nothing
+    GrowingVector<collide::CollisionFilter> filters_;
     Vector<std::uint32_t> moved_;
     LazySortedList<ObjectPair, IsBefore> pairs_;
     Vector<ObjectPair> began_pairs_, ended_pairs_;

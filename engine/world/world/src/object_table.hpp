@@ -2,6 +2,7 @@
 // What a World knows of its objects beside their boxes. Indices are the spatial index's.
 #pragma once
 #include <crofton/core/error.hpp>
+#include <crofton/core/growing_vector.hpp>
 #include <crofton/core/memory.hpp>
 #include <crofton/world/answers.hpp>
 #include <crofton/world/inputs.hpp>
@@ -57,34 +58,55 @@ inline void renew(std::uint32_t& generation) {
 struct ObjectTable {
     explicit ObjectTable(std::uint32_t first) : first_generation(first) {}
 
-    Vector<Object> objects;
-    ObjectNames names;
+    GrowingVector<Object> objects;
+    GrowingVector<std::uint32_t> generations;
+    GrowingVector<std::uint64_t> users;
+    ObjectNames names;  // of these two
     std::uint32_t first_generation;
     std::size_t count = 0;  // alive
 
     void add(std::uint32_t index, const Object& object, std::uint64_t user) {
         if (index >= objects.size()) {
-            resize(objects, index + std::size_t{1});
-            resize(names.generations, index + std::size_t{1}, first_generation);
-            resize(names.users, index + std::size_t{1});
+            const std::size_t more = index + std::size_t{1} - objects.size();
+            objects.append(more, Object());
+            generations.append(more, first_generation);
+            users.append(more, 0);
+            show_names();
         }
-        objects[index] = object;
-        objects[index].alive = true;
-        names.users[index] = user;
+        objects.set(index, object);
+        objects.edit(index).alive = true;
+        users.set(index, user);
         ++count;
     }
     // Handles become stale at once; the index is free once the spatial index has removed it too.
     void remove(std::uint32_t index) {
-        objects[index].alive = false;
-        renew(names.generations[index]);
+        objects.edit(index).alive = false;
+        renew(generations.edit(index));
         --count;
+    }
+    // Goes on copying arrays that grow, or ends it.
+    void settle() {
+        objects.settle();
+        generations.settle();
+        users.settle();
+        show_names();
+    }
+    void finish() {
+        objects.finish();
+        generations.finish();
+        users.finish();
+        show_names();
+    }
+    void show_names() {
+        names.generations = generations.view();
+        names.users = users.view();
     }
     [[nodiscard]] bool contains(ObjectHandle handle) const {
         return handle.index < objects.size() && objects[handle.index].alive &&
-               names.generations[handle.index] == handle.generation;
+               generations[handle.index] == handle.generation;
     }
-    [[nodiscard]] ObjectHandle handle(std::uint32_t index) const { return {index, names.generations[index]}; }
-    [[nodiscard]] ObjectRef ref(std::uint32_t index) const { return {handle(index), names.users[index]}; }
+    [[nodiscard]] ObjectHandle handle(std::uint32_t index) const { return {index, generations[index]}; }
+    [[nodiscard]] ObjectRef ref(std::uint32_t index) const { return {handle(index), users[index]}; }
 };
 
 // Which objects are boxes in the list of what moves, and their entries: all that a call for many of them looks up.

@@ -30,12 +30,12 @@ Bound::Bound(const Sphere& sphere) : kind(BoundKind::sphere), radius(sphere.radi
 Result<void> World::State::check(ObjectHandle object, std::uint64_t item) const {
     if (table.contains(object)) return {};
     if (world::is_region_index(object.index)) return regions.refuse_change(object, item);
-    return world::refuse("object", object.index, object.generation, table.names.generations, table.first_generation,
+    return world::refuse("object", object.index, object.generation, table.generations.view(), table.first_generation,
                          item);
 }
 
 StagedChange& World::State::stage(std::uint32_t object) {
-    std::uint32_t& entry = table.objects[object].staged;
+    std::uint32_t& entry = table.objects.edit(object).staged;
     if (entry == kNoIndex) {
         entry = static_cast<std::uint32_t>(staged.size());
         staged.emplace_back();
@@ -245,14 +245,14 @@ Result<void> World::set_shape(ObjectHandle object, const convex::Shape* shape) {
 Result<void> World::set_hidden(ObjectHandle object, bool hidden) {
     if (world::is_region_index(object.index)) return state_->regions.set_hidden(object, hidden);
     if (auto known = state_->check(object, object.index); !known) return known;
-    state_->table.objects[object.index].shown = !hidden;
+    state_->table.objects.edit(object.index).shown = !hidden;
     state_->stage(object.index);
     return {};
 }
 
 Result<void> World::set_layers(ObjectHandle object, std::uint32_t layers) {
     if (auto known = state_->check(object, object.index); !known) return known;
-    world::Object& changed = state_->table.objects[object.index];
+    world::Object& changed = state_->table.objects.edit(object.index);
     if (changed.instance != kNoIndex) return state_->scene.set_instance_layers(changed.instance, layers);
     changed.layers = layers;
     state_->stage(object.index);
@@ -261,14 +261,14 @@ Result<void> World::set_layers(ObjectHandle object, std::uint32_t layers) {
 
 Result<void> World::set_collides_with(ObjectHandle object, std::uint32_t layers) {
     if (auto known = state_->check(object, object.index); !known) return known;
-    state_->table.objects[object.index].collides_with = layers;
+    state_->table.objects.edit(object.index).collides_with = layers;
     state_->pair_changes.objects.push_back(object.index);
     return {};
 }
 
 Result<void> World::set_user(ObjectHandle object, std::uint64_t user) {
     if (auto known = state_->check(object, object.index); !known) return known;
-    state_->table.names.users[object.index] = user;
+    state_->table.users.set(object.index, user);
     state_->pair_changes.objects.push_back(object.index);
     state_->pair_changes.renamed = true;
     return {};

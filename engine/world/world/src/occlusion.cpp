@@ -38,7 +38,7 @@ const depth::ClusteredMesh* World::clusters_of(MeshHandle mesh) const {
 
 Result<void> World::set_occludes(ObjectHandle object, bool occludes) {
     if (auto known = state_->check(object, object.index); !known) return known;
-    world::Object& changed = state_->table.objects[object.index];
+    world::Object& changed = state_->table.objects.edit(object.index);
     if (changed.instance == kNoIndex || state_->is_shape_alone(changed))
         return fail(ErrorCode::invalid_argument, object.index,
                     "world: the object has no mesh and hides nothing: add an object with a mesh that only occludes");

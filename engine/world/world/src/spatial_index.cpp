@@ -60,12 +60,11 @@ Result<ItemId> SpatialIndex::add(std::uint32_t layers) {
     auto item = tree_.insert_detached(layers);
     if (!item) return item;
     if (*item >= items_.size()) {
-        if (items_.size() == items_.capacity()) items_.reserve(items_.size() + items_.size() / 8 + 16);
-        items_.resize(*item + std::size_t{1});
+        items_.append(*item + std::size_t{1} - items_.size(), Item());
     } else {
         note_changed(*item);
     }
-    items_[*item] = {};
+    items_.set(*item, {});
     keep_no_box(*item);
     return item;
 }
@@ -76,16 +75,16 @@ void SpatialIndex::keep_no_box(ItemId item) {
 
 void SpatialIndex::put(ItemId item, Place place, const Obb& box) {
     Group& to = group(place);
-    items_[item].place = place;
-    items_[item].entry = static_cast<std::uint32_t>(to.items.size());
+    items_.edit(item).place = place;
+    items_.edit(item).entry = static_cast<std::uint32_t>(to.items.size());
     to.items.push_back(item);
     to.boxes.push_back(box);
 }
 
 void SpatialIndex::add_mover(ItemId item, const Obb& box, std::uint32_t last_moved) {
-    items_[item].place = Place::moving;
-    items_[item].entry = moving_.add(item, box, last_moved);
-    items_[item].last_moved = last_moved;
+    items_.edit(item).place = Place::moving;
+    items_.edit(item).entry = moving_.add(item, box, last_moved);
+    items_.edit(item).last_moved = last_moved;
     relisted_.push_back(item);
 }
 
@@ -95,14 +94,14 @@ void SpatialIndex::take(ItemId item) {
     if (taken.place == Place::moving) {
         if (moving_.last_moved(taken.entry) != taken.last_moved) note_changed(item);
         const ItemId last = moving_.item(moving_.size() - 1);
-        items_[last].entry = taken.entry;
+        items_.edit(last).entry = taken.entry;
         relisted_.push_back(item);
         relisted_.push_back(last);
         moving_.remove(taken.entry);
         return;
     }
     Group& from = group(taken.place);
-    items_[from.items.back()].entry = taken.entry;
+    items_.edit(from.items.back()).entry = taken.entry;
     from.items[taken.entry] = from.items.back();
     from.boxes[taken.entry] = from.boxes.back();
     from.items.pop_back();
@@ -138,7 +137,7 @@ void SpatialIndex::note_age_of_removed(const Item& item) {
 }
 
 void SpatialIndex::remove(ItemId item) {
-    Item& removed = items_[item];
+    Item& removed = items_.edit(item);
     if (removed.place != Place::nowhere) note_age_of_removed(removed);
     if (removed.place == Place::resting)
         detach(item);
@@ -156,7 +155,7 @@ const Obb& SpatialIndex::box(ItemId item) const {
 }
 
 void SpatialIndex::note_move(ItemId id) {
-    Item& item = items_[id];
+    Item& item = items_.edit(id);
     const bool in_a_row = item.last_moved + 1 == now_;
     item.streak = in_a_row ? std::min<std::uint8_t>(item.streak + 1, kUpdatesToMove) : std::uint8_t{1};
     item.last_moved = now_;
@@ -179,7 +178,7 @@ void SpatialIndex::add_movers_that_moved(std::span<std::uint64_t> bits) const {
 
 // Than in the list.
 void SpatialIndex::set_box_elsewhere(ItemId id, const Obb& box) {
-    Item& item = items_[id];
+    Item& item = items_.edit(id);
     switch (item.place) {
         case Place::nowhere:
             put(id, item.shown ? Place::entering : Place::hidden, box);
@@ -207,7 +206,7 @@ void SpatialIndex::set_box_elsewhere(ItemId id, const Obb& box) {
 }
 
 void SpatialIndex::set_shown(ItemId id, bool shown) {
-    Item& item = items_[id];
+    Item& item = items_.edit(id);
     if (item.shown == shown) return;
     item.shown = shown;
     if (item.place == Place::nowhere) return;
@@ -242,6 +241,7 @@ SpatialIndex::Changes SpatialIndex::update(const Settings& settings, Executor& e
     wants_refit_ = false;
     rebuild_step(settings.rebuild_budget);
     moving_.update(executor);
+    items_.settle();
     if (!moved_items_.empty() || !relisted_.empty()) mover_tree_is_old_ = true;
     ++now_;
     return changes;
@@ -250,6 +250,7 @@ SpatialIndex::Changes SpatialIndex::update(const Settings& settings, Executor& e
 void SpatialIndex::release_scratch() {
     Group& entering = group(Place::entering);
     if (entering.items.empty()) release(entering.items, entering.boxes);
+    items_.finish();
     release(moved_items_, member_items_, relisted_, moved_, rested_, moved_boxes_);
 }
 
@@ -315,7 +316,7 @@ void SpatialIndex::enter(const Settings& settings, Changes& changes, Executor& e
 void SpatialIndex::attach(ItemId item) {
     const Obb last = box(item);
     take(item);
-    items_[item].place = Place::resting;
+    items_.edit(item).place = Place::resting;
     require_ok(tree_.attach(item, last));
     ++changed_in_tree_.came;
 }
@@ -338,8 +339,8 @@ void SpatialIndex::build_tree(std::span<const ItemId> fresh, Executor& executor)
     for (const ItemId item : fresh) {
         boxes[item] = box(item);
         take(item);
-        items_[item].place = Place::resting;
-        items_[item].streak = 0;
+        items_.edit(item).place = Place::resting;
+        items_.edit(item).streak = 0;
     }
     Vector<ItemId> detached, removed;
     for (ItemId item = 0; item < items_.size(); ++item) {

@@ -6,6 +6,7 @@
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/boxtree/structure.hpp>
 #include <crofton/collide/moving_tree.hpp>
+#include <crofton/core/growing_vector.hpp>
 #include <crofton/core/memory.hpp>
 #include <crofton/geometry/same_bits.hpp>
 #include <crofton/world/world.hpp>
@@ -179,7 +180,7 @@ class SpatialIndex {
     }
     [[nodiscard]] const collide::MovingTree& mover_tree() const;
 
-    Vector<Item> items_;
+    GrowingVector<Item> items_;
     Group groups_[3];  // by Place: nowhere (empty), hidden, entering
     boxtree::BoxTree tree_;
     MovingList moving_;

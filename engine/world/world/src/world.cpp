@@ -73,7 +73,7 @@ Result<RegionPlace> World::place_of(ObjectHandle object) const {
 Result<std::uint64_t> World::user_of(ObjectHandle object) const {
     if (state_->regions.contains(object)) return state_->regions.ref(object.index).user;
     if (auto known = state_->check(object, object.index); !known) return tl::unexpected(known.error());
-    return state_->table.names.users[object.index];
+    return state_->table.users[object.index];
 }
 
 Result<Obb> World::box_of(ObjectHandle object) const {
@@ -115,7 +115,7 @@ void World::State::apply_changes() {
     for (std::size_t n = 0; n < staged.size(); ++n) {
         const StagedChange& change = staged[n];
         index.fetch_ahead(n, staged.size(), [&](std::size_t later) { return staged[later].object; });
-        world::Object& object = table.objects[change.object];
+        world::Object& object = table.objects.edit(change.object);
         object.staged = kNoIndex;
         if (!object.alive) continue;
         if (object.instance != kNoIndex) {
@@ -136,7 +136,7 @@ void World::State::apply_changes() {
 // The bound as given or, where the object's shape is larger, a box around both.
 void World::State::update_bound(std::uint32_t id, const Bound& given) {
     const Bound bound = object_shapes.has(id) || object_shapes.is_grown(id) ? object_shapes.cover(id, given) : given;
-    world::Object& object = table.objects[id];
+    world::Object& object = table.objects.edit(id);
     if (object.kind != bound.kind || object.radius != bound.radius) {
         pair_changes.objects.push_back(id);
         shape_contacts.note(id);
@@ -220,6 +220,7 @@ Result<void> World::State::apply_scene(Executor& executor) {
 // After the update in which many objects have come at once: the next ones bring few.
 void World::State::release_scratch() {
     world::release(staged, removed, rebound, pair_changes.objects);
+    table.finish();
     index.release_scratch();
     finder.release_scratch();
     shape_contacts.release_scratch();
@@ -270,6 +271,7 @@ Result<void> World::update(Executor& executor) {
     s.statistics.contacts_us =
         std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
     s.pair_changes.clear();
+    s.table.settle();
     s.pair_changes.after_error = !found;
     world::trace_count(trace, "boxes changed", changes.boxes);
     const std::size_t ground_pairs = s.ground.is_used() ? s.ground.own_pairs().size() : 0;

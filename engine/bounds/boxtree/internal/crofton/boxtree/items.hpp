@@ -3,6 +3,7 @@
 #pragma once
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/core/error.hpp>
+#include <crofton/core/growing_vector.hpp>
 #include <crofton/core/memory.hpp>
 #include <crofton/geometry/box.hpp>
 #include <cstdint>
@@ -19,6 +20,11 @@ void make_room_for(Vector<T>& items, std::size_t more) {
     if (items.size() + more > items.capacity()) items.reserve(items.size() + items.size() / 8 + 16 * more);
 }
 
+// Where a tree is built in steps, more items come meanwhile and afterwards.
+[[nodiscard]] constexpr std::size_t with_room(std::size_t size) {
+    return size + size / 16 + 16;
+}
+
 // The items of a tree, by id.
 class Items {
   public:
@@ -27,8 +33,8 @@ class Items {
     [[nodiscard]] Result<void> assign(std::span<const Obb> boxes, std::span<const std::uint32_t> layer_masks,
                                       Aabb& centers, std::size_t room = 0);
 
-    [[nodiscard]] std::span<const Obb> boxes() const { return boxes_; }
-    [[nodiscard]] std::span<const std::uint32_t> layer_masks() const { return layer_masks_; }
+    [[nodiscard]] std::span<const Obb> boxes() const { return boxes_.view(); }
+    [[nodiscard]] std::span<const std::uint32_t> layer_masks() const { return layer_masks_.view(); }
     [[nodiscard]] std::span<const ItemId> free_ids() const { return free_ids_; }
     [[nodiscard]] std::size_t size() const { return boxes_.size(); }  // ids given so far, free ones included
     [[nodiscard]] std::size_t count_in_leaves() const { return boxes_.size() - free_ids_.size() - detached_count_; }
@@ -44,14 +50,19 @@ class Items {
     }
     [[nodiscard]] Result<ItemId> add(const Obb& box, std::uint32_t layer_mask);  // errors: 2^30 items
     void free(ItemId item) { free_ids_.push_back(item); }
-    void set_box(ItemId item, const Obb& box) { boxes_[item] = box; }
+    void set_box(ItemId item, const Obb& box) { boxes_.set(item, box); }
     void set_layers(ItemId item, std::uint32_t layer_mask);
     void set_detached(ItemId item, bool detached);
+    // Goes on copying arrays that grow.
+    void settle() {
+        boxes_.settle();
+        layer_masks_.settle();
+    }
 
   private:
     friend struct TreeStorage;
-    Vector<Obb> boxes_;
-    Vector<std::uint32_t> layer_masks_;
+    GrowingVector<Obb> boxes_;
+    GrowingVector<std::uint32_t> layer_masks_;
     Vector<ItemId> free_ids_;
     Vector<std::uint64_t> detached_bits_;  // by id, up to the last that was ever detached
     std::size_t detached_count_ = 0;

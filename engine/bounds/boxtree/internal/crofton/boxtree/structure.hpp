@@ -5,6 +5,7 @@
 #include <crofton/boxtree/change_marks.hpp>
 #include <crofton/boxtree/items.hpp>
 #include <crofton/boxtree/layout.hpp>
+#include <crofton/core/growing_vector.hpp>
 #include <crofton/measure/measure.hpp>
 #include <span>
 
@@ -24,17 +25,17 @@ class Structure {
     [[nodiscard]] Orientation orientation() const { return orientation_; }
 
     // The root is nodes()[0]; there always is one.
-    [[nodiscard]] std::span<const Node> nodes() const { return nodes_; }
+    [[nodiscard]] std::span<const Node> nodes() const { return nodes_.view(); }
     [[nodiscard]] std::span<const Axes> axes() const { return axes_; }  // the world's, then others
     [[nodiscard]] const Axes& axes_of(const Node& node) const { return axes_[node.axes]; }
-    [[nodiscard]] std::span<const Leaf> leaves() const { return leaves_; }
-    [[nodiscard]] std::span<const ItemId> slot_items() const { return slot_items_; }          // kNone in empty slots
+    [[nodiscard]] std::span<const Leaf> leaves() const { return leaves_.view(); }
+    [[nodiscard]] std::span<const ItemId> slot_items() const { return slot_items_.view(); }   // kNone in empty slots
     [[nodiscard]] std::span<const std::uint8_t> leaf_counts() const { return leaf_counts_; }  // leaves()[i].count
     [[nodiscard]] std::span<const LeafRange> leaf_ranges() const { return ranges_; }          // by NodeId
     [[nodiscard]] std::span<const RadiusRange> leaf_radii() const { return leaf_radii_; }
     [[nodiscard]] std::span<const NodeRadii> node_radii() const { return node_radii_; }
     [[nodiscard]] unsigned height() const { return height_; }  // nodes on the longest path from the root to a leaf
-    [[nodiscard]] std::span<const std::uint32_t> item_slots() const { return item_slots_; }  // kNone: in no leaf
+    [[nodiscard]] std::span<const std::uint32_t> item_slots() const { return item_slots_.view(); }  // kNone: in no leaf
     [[nodiscard]] std::uint32_t slot_of(ItemId item) const { return item_slots_[item]; }
     [[nodiscard]] bool contains(ItemId item) const { return item < item_slots_.size() && item_slots_[item] != kNone; }
     // An axis-aligned box around the bound of child `lane` of a node, rounded outward.
@@ -92,6 +93,8 @@ class Structure {
     void write_leaf_radii(LeafId l);
     void widen_leaf_radii(LeafId l, const Obb& box);
     void rewrite_leaf(LeafId l);
+    [[nodiscard]] std::size_t write_leaves(std::span<const LeafId> leaves);
+    void settle();
     void write_item(ItemId item);
     void refresh_node(NodeId n);
     void refresh_bounds(NodeId n);
@@ -104,14 +107,14 @@ class Structure {
     measure::Criterion criterion_;
     Orientation orientation_;
     Vector<Axes> axes_ = Vector<Axes>(1);
-    Vector<Node> nodes_;
+    GrowingVector<Node> nodes_;
     Vector<LeafRange> ranges_;
     Vector<NodeRadii> node_radii_;
-    Vector<Leaf> leaves_;
+    GrowingVector<Leaf> leaves_;
     Vector<std::uint8_t> leaf_counts_;
     Vector<RadiusRange> leaf_radii_;
-    Vector<ItemId> slot_items_;
-    Vector<std::uint32_t> item_slots_;
+    GrowingVector<ItemId> slot_items_;
+    GrowingVector<std::uint32_t> item_slots_;
     SlotsVersion slots_version_;
     unsigned height_ = 1;
     std::size_t next_free_leaf_ = 0;  // where a Placement looks on for an empty leaf

@@ -56,6 +56,9 @@ using PairTest = FunctionRef<bool(std::uint32_t first, std::uint32_t second)>;
 // neighbours in space are neighbours in memory. Answers do not depend on earlier updates.
 class Broadphase {
   public:
+    // update_moved() looks at items one by one while at most one in this many has moved, come or gone.
+    static constexpr std::size_t kFewMovers = 8;
+
     explicit Broadphase(const BroadphaseOptions& options = {});
     ~Broadphase();
     Broadphase(Broadphase&&) noexcept;

@@ -21,8 +21,8 @@ class Regions;
 
 // Indexed by an object's index.
 struct ObjectNames {
-    Vector<std::uint32_t> generations;
-    Vector<std::uint64_t> users;
+    std::span<const std::uint32_t> generations;
+    std::span<const std::uint64_t> users;
     const Regions* regions = nullptr;  // which have the names of their objects
 };
 
