@@ -30,7 +30,10 @@ namespace {
 using namespace crofton::convex;
 
 constexpr int kFrames = 8, kShapes = 1000;
-constexpr std::uint32_t kSide = 1025;
+constexpr std::uint32_t kSide = 1025, kTerrainSide = 257;
+
+// What the shapes meet: a mesh, a height field, or the same heights as a mesh of 131,072 triangles.
+enum class Ground { bunny, heights, terrain };
 
 // Where a shape stands on a surface, sunk in by 1 % of its size.
 struct SurfaceScene {
@@ -63,7 +66,19 @@ SurfaceScene make_crests() {
     return scene;
 }
 
-SurfaceScene make_scene(bool field, bool capsule, bool crests = false) {
+TriangleMesh make_terrain() {
+    TriangleMesh mesh;
+    for (std::uint32_t j = 0; j < kTerrainSide; ++j)
+        for (std::uint32_t i = 0; i < kTerrainSide; ++i) mesh.positions.emplace_back(i, height(i, j), j);
+    for (std::uint32_t j = 0; j + 1 < kTerrainSide; ++j)
+        for (std::uint32_t i = 0; i + 1 < kTerrainSide; ++i) {
+            const std::uint32_t at = j * kTerrainSide + i, beyond = at + kTerrainSide;
+            mesh.indices.insert(mesh.indices.end(), {at, beyond, at + 1, at + 1, beyond, beyond + 1});
+        }
+    return mesh;
+}
+
+SurfaceScene make_scene(Ground ground, bool capsule, bool crests = false) {
     if (crests) return make_crests();
     SurfaceScene scene;
     std::mt19937_64 random(3);
@@ -72,11 +87,15 @@ SurfaceScene make_scene(bool field, bool capsule, bool crests = false) {
     };
     const auto direction = [&] { return glm::normalize(glm::dvec3(number(-1, 1), number(-1, 1), number(-1, 1.1))); };
     scene.capsule = capsule;
-    if (field) {
-        scene.size = 0.5f;
+    const double far = ground == Ground::heights ? 1000.0 : kTerrainSide - 20.0;  // from the corner of the heights
+    if (ground == Ground::heights) {
         for (std::uint32_t j = 0; j < kSide; ++j)
             for (std::uint32_t i = 0; i < kSide; ++i) scene.heights.push_back(height(i, j));
-    } else {
+    } else if (ground == Ground::terrain) {
+        scene.mesh = make_terrain();
+    }
+    scene.size = 0.5f;
+    if (ground == Ground::bunny) {
         scene.mesh = shared_mesh("bunny");
         glm::vec3 low(1e9f), high(-1e9f);
         for (const glm::vec3& p : scene.mesh.positions) low = glm::min(low, p), high = glm::max(high, p);
@@ -86,8 +105,8 @@ SurfaceScene make_scene(bool field, bool capsule, bool crests = false) {
     scene.shape = capsule ? Shape::capsule(0.6f * s, 0.5f * s).value() : Shape::box({s, s, s}).value();
     for (int i = 0; i < kShapes; ++i) {
         glm::dvec3 on, n;
-        if (field) {
-            on = {number(20, 1000), 0, number(20, 1000)};
+        if (ground != Ground::bunny) {
+            on = {number(20, far), 0, number(20, far)};
             on.y = height(on.x, on.z);
             n = glm::normalize(glm::dvec3(on.y - height(on.x + 1, on.z), 1.0, on.y - height(on.x, on.z + 1)));
         } else {
@@ -136,8 +155,8 @@ void frames(benchmark::State& state, double size, Run run) {
 // The surface as this library has it.
 class OwnSurface {
   public:
-    OwnSurface(const SurfaceScene& scene, bool field) : is_field_(field) {
-        if (field)
+    explicit OwnSurface(const SurfaceScene& scene) : is_field_(!scene.heights.empty()) {
+        if (is_field_)
             heights_ = HeightField::build({kSide, kSide, scene.heights}).value();
         else
             tree_ = mesh::MeshTree::build(scene.mesh).value();
@@ -153,10 +172,16 @@ class OwnSurface {
     mesh::MeshTree tree_;
 };
 
-void crofton_rest(benchmark::State& state, bool field, bool capsule, bool crests = false) {
-    const SurfaceScene scene = make_scene(field, capsule, crests);
-    if (!field && scene.mesh.indices.empty()) return state.SkipWithError("no shared meshes");
-    const OwnSurface own(scene, field);
+bool is_missing(const SurfaceScene& scene, benchmark::State& state) {
+    const bool missing = scene.heights.empty() && scene.mesh.indices.empty();
+    if (missing) state.SkipWithError("no shared meshes");
+    return missing;
+}
+
+void crofton_rest(benchmark::State& state, Ground ground, bool capsule, bool crests = false) {
+    const SurfaceScene scene = make_scene(ground, capsule, crests);
+    if (is_missing(scene, state)) return;
+    const OwnSurface own(scene);
     const Shape surface = own.shape(Sides::front);
     const RigidTransform still;
     Manifolds found;
@@ -172,9 +197,9 @@ void crofton_rest(benchmark::State& state, bool field, bool capsule, bool crests
 }
 // A ball of the box's width, sunk in by as much.
 void crofton_ball(benchmark::State& state) {
-    const SurfaceScene scene = make_scene(false, false);
-    if (scene.mesh.indices.empty()) return state.SkipWithError("no shared meshes");
-    const OwnSurface own(scene, false);
+    const SurfaceScene scene = make_scene(Ground::bunny, false);
+    if (is_missing(scene, state)) return;
+    const OwnSurface own(scene);
     const Shape surface = own.shape(Sides::front), ball = Shape::sphere(scene.size).value();
     const RigidTransform still;
     Manifolds found;
@@ -189,11 +214,11 @@ void crofton_ball(benchmark::State& state) {
     });
 }
 BENCHMARK(crofton_ball)->Name("ball on bunny/crofton");
-BENCHMARK_CAPTURE(crofton_rest, a, false, false)->Name("box on bunny/crofton");
-BENCHMARK_CAPTURE(crofton_rest, b, false, true)->Name("capsule on bunny/crofton");
-BENCHMARK_CAPTURE(crofton_rest, c, true, false)->Name("box on heights 1025^2/crofton");
-BENCHMARK_CAPTURE(crofton_rest, f, true, false, true)->Name("box on a crest/crofton");
-BENCHMARK_CAPTURE(crofton_rest, d, true, true)->Name("capsule on heights 1025^2/crofton");
+BENCHMARK_CAPTURE(crofton_rest, a, Ground::bunny, false)->Name("box on bunny/crofton");
+BENCHMARK_CAPTURE(crofton_rest, b, Ground::bunny, true)->Name("capsule on bunny/crofton");
+BENCHMARK_CAPTURE(crofton_rest, c, Ground::heights, false)->Name("box on heights 1025^2/crofton");
+BENCHMARK_CAPTURE(crofton_rest, f, Ground::heights, false, true)->Name("box on a crest/crofton");
+BENCHMARK_CAPTURE(crofton_rest, d, Ground::heights, true)->Name("capsule on heights 1025^2/crofton");
 
 // The shape that is asked about: the scene's box, or a capsule or sphere of about its size.
 enum class Probe { box, capsule, sphere };
@@ -204,10 +229,10 @@ Shape probe_shape(Probe kind, float s) {
 }
 
 // Down onto the surface from twice the size above it.
-void crofton_drop(benchmark::State& state, bool field, Probe kind) {
-    const SurfaceScene scene = make_scene(field, false);
-    if (!field && scene.mesh.indices.empty()) return state.SkipWithError("no shared meshes");
-    const OwnSurface own(scene, field);
+void crofton_drop(benchmark::State& state, Ground ground, Probe kind) {
+    const SurfaceScene scene = make_scene(ground, false);
+    if (is_missing(scene, state)) return;
+    const OwnSurface own(scene);
     const Shape surface = own.shape(Sides::both), shape = probe_shape(kind, scene.size);
     const RigidTransform still;
     frames(state, scene.size, [&](int f, int i) {
@@ -219,20 +244,22 @@ void crofton_drop(benchmark::State& state, bool field, Probe kind) {
         return Told{impact->result == CastResult::hit ? 1 : 0};
     });
 }
-BENCHMARK_CAPTURE(crofton_drop, a, false, Probe::box)->Name("cast of a box, bunny/crofton");
-BENCHMARK_CAPTURE(crofton_drop, c, false, Probe::capsule)->Name("cast of a capsule, bunny/crofton");
-BENCHMARK_CAPTURE(crofton_drop, e, false, Probe::sphere)->Name("cast of a sphere, bunny/crofton");
-BENCHMARK_CAPTURE(crofton_drop, b, true, Probe::box)->Name("cast of a box, heights 1025^2/crofton");
-BENCHMARK_CAPTURE(crofton_drop, d, true, Probe::capsule)->Name("cast of a capsule, heights 1025^2/crofton");
-BENCHMARK_CAPTURE(crofton_drop, f, true, Probe::sphere)->Name("cast of a sphere, heights 1025^2/crofton");
+#define DROP(ground, name)                                                                                         \
+    BENCHMARK_CAPTURE(crofton_drop, box, ground, Probe::box)->Name("cast of a box, " name "/crofton");             \
+    BENCHMARK_CAPTURE(crofton_drop, capsule, ground, Probe::capsule)->Name("cast of a capsule, " name "/crofton"); \
+    BENCHMARK_CAPTURE(crofton_drop, sphere, ground, Probe::sphere)->Name("cast of a sphere, " name "/crofton")
+DROP(Ground::bunny, "bunny");
+DROP(Ground::heights, "heights 1025^2");
+DROP(Ground::terrain, "terrain");
+#undef DROP
 
 // Where the shapes rest, sunk in by 1 % of their size, or as far above the surface as they are large.
 enum class Question { meet, distance, depth };
 
-void crofton_ask(benchmark::State& state, Question question, Probe kind) {
-    const SurfaceScene scene = make_scene(false, false);
-    if (scene.mesh.indices.empty()) return state.SkipWithError("no shared meshes");
-    const OwnSurface own(scene, false);
+void crofton_ask(benchmark::State& state, Ground ground, Question question, Probe kind) {
+    const SurfaceScene scene = make_scene(ground, false);
+    if (is_missing(scene, state)) return;
+    const OwnSurface own(scene);
     const Shape surface = own.shape(Sides::both), shape = probe_shape(kind, scene.size);
     const RigidTransform still;
     frames(state, scene.size, [&](int f, int i) {
@@ -251,13 +278,17 @@ void crofton_ask(benchmark::State& state, Question question, Probe kind) {
         }
     });
 }
-#define ASK(question, name)                                                                                       \
-    BENCHMARK_CAPTURE(crofton_ask, box, question, Probe::box)->Name(name " of a box, bunny/crofton");             \
-    BENCHMARK_CAPTURE(crofton_ask, capsule, question, Probe::capsule)->Name(name " of a capsule, bunny/crofton"); \
-    BENCHMARK_CAPTURE(crofton_ask, sphere, question, Probe::sphere)->Name(name " of a sphere, bunny/crofton")
-ASK(Question::meet, "overlap");
-ASK(Question::distance, "distance");
-ASK(Question::depth, "depth");
+#define ASK(ground, question, name, where)                                                                        \
+    BENCHMARK_CAPTURE(crofton_ask, box, ground, question, Probe::box)->Name(name " of a box, " where "/crofton"); \
+    BENCHMARK_CAPTURE(crofton_ask, capsule, ground, question, Probe::capsule)                                     \
+        ->Name(name " of a capsule, " where "/crofton");                                                          \
+    BENCHMARK_CAPTURE(crofton_ask, sphere, ground, question, Probe::sphere)                                       \
+        ->Name(name " of a sphere, " where "/crofton")
+ASK(Ground::bunny, Question::meet, "overlap", "bunny");
+ASK(Ground::bunny, Question::distance, "distance", "bunny");
+ASK(Ground::bunny, Question::depth, "depth", "bunny");
+ASK(Ground::terrain, Question::meet, "overlap", "terrain");
+ASK(Ground::heights, Question::meet, "overlap", "heights 1025^2");
 #undef ASK
 
 #if defined(CROFTON_HAVE_BULLET)
@@ -329,7 +360,7 @@ struct BulletSurface {
     std::vector<btCollisionAlgorithm*> algorithms;
 };
 void bullet_rest(benchmark::State& state, bool field, bool capsule, bool crests = false) {
-    const SurfaceScene scene = make_scene(field, capsule, crests);
+    const SurfaceScene scene = make_scene(field ? Ground::heights : Ground::bunny, capsule, crests);
     if (!field && scene.mesh.indices.empty()) return state.SkipWithError("no shared meshes");
     const auto peer = std::make_unique<BulletSurface>(scene, field);
     frames(state, scene.size, [&](int f, int i) { return peer->manifold(scene, f, i); });
@@ -346,7 +377,7 @@ float ode_height(void* user, int i, int j) {
     return static_cast<const float*>(user)[static_cast<std::size_t>(j) * kSide + static_cast<std::size_t>(i)];
 }
 void ode_rest(benchmark::State& state, bool field, bool capsule, int room = 64, bool crests = false) {
-    SurfaceScene scene = make_scene(field, capsule, crests);
+    SurfaceScene scene = make_scene(field ? Ground::heights : Ground::bunny, capsule, crests);
     if (!field && scene.mesh.indices.empty()) return state.SkipWithError("no shared meshes");
     dInitODE();
     dTriMeshDataID data = nullptr;

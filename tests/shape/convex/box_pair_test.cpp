@@ -249,6 +249,79 @@ TEST_SUITE("convex/box_pair") {
         }
     }
 
+    TEST_CASE(
+        "boxes in one tilted frame that touch exactly, but for 2^-80 to 2^-102, meet iff that is towards each other") {
+        RandomShapes random(49);
+        for (int i = 0; i < 4000; ++i) {
+            CAPTURE(i);
+            // Half edges of powers of two keep the way from face to face exact.
+            const glm::dvec3 ha(std::ldexp(1.0, -random.index(3)), std::ldexp(1.0, -random.index(3)),
+                                std::ldexp(1.0, -random.index(3)));
+            const Shape box = Shape::box(glm::vec3(ha)).value();
+            const glm::dmat3 r = random.rotation();
+            const int k = random.index(3);
+            const glm::dvec3 normal = glm::cross(r[(k + 1) % 3], r[(k + 2) % 3]);
+            const double beyond = std::ldexp(1.0, -80 - random.index(23));
+            const bool towards = random.index(2) == 0;
+            const RigidTransform a{r, (towards ? beyond : -beyond) * normal}, b{r, 2.0 * ha[k] * r[k]};
+            CHECK(intersects({box, a}, {box, b}) == towards);
+            CHECK(intersects({box, b}, {box, a}) == towards);
+            CHECK((contact_manifold({box, a}, {box, b}).count > 0) == towards);
+            CHECK(intersects({box, {r, glm::dvec3(0.0)}}, {box, b}));
+        }
+    }
+
+    TEST_CASE("boxes that touch along an edge have a point at each end of their common stretch, and no other") {
+        RandomShapes random(50);
+        int meeting = 0;
+        for (int i = 0; i < 12000; ++i) {
+            CAPTURE(i);
+            const auto side = [&] {
+                return static_cast<float>(i % 3 == 0 ? (1 + random.index(8)) / 8.0 : random.number(0.2, 1.0));
+            };
+            const float ax = side(), ay = side(), az = side(), bx = side(), by = side(), bz = side();
+            const glm::dvec3 ha(ax, ay, az), hb(bx, by, bz);
+            const Shape a = Shape::box(glm::vec3(ha)).value(), b = Shape::box(glm::vec3(hb)).value();
+            // b stands at a's edge x, z; in a's frame, or turned about the edge.
+            const double turn = i % 2 == 0 ? 0.0 : random.number(-0.7, 0.7), c = std::cos(turn), s = std::sin(turn);
+            const glm::dmat3 about_edge(c, 0, -s, 0, 1, 0, s, 0, c);
+            const int how = random.index(4);
+            const double yaw = how == 1 ? random.number(0, 6) : 0.0;
+            const glm::dmat3 ra =
+                how >= 2 ? random.rotation()
+                         : glm::dmat3(std::cos(yaw), 0, -std::sin(yaw), 0, 1, 0, std::sin(yaw), 0, std::cos(yaw));
+            const glm::dvec3 edge_b = about_edge * glm::dvec3(-hb.x, 0.0, -hb.z);
+            const double y = random.number(-0.8, 0.8) * (ha.y + hb.y);
+            const glm::dvec3 place = how == 3 ? 100.0 * random.direction() : glm::dvec3(0.0);
+            const RigidTransform pose_a{ra, place},
+                pose_b{ra * about_edge, place + ra * glm::dvec3(ha.x - edge_b.x, y, ha.z - edge_b.z)};
+            const double ends[2] = {std::max(-ha.y, y - hb.y), std::min(ha.y, y + hb.y)};
+            const double margin = random.index(2) == 0 ? 0.0 : 0.02;
+            for (const bool swapped : {false, true}) {
+                const ShapeAtPose first{swapped ? b : a, swapped ? pose_b : pose_a},
+                    second{swapped ? a : b, swapped ? pose_a : pose_b};
+                PairCache cache;
+                for (int frame = 0; frame < 3; ++frame) {
+                    const Manifold m = contact_manifold(first, second, {.margin = margin, .max_points = 8}, &cache);
+                    if (margin == 0.0 && !intersects(first, second)) {
+                        CHECK(m.count == 0);
+                        continue;
+                    }
+                    ++meeting;
+                    REQUIRE(m.count == 2);
+                    for (const double end : ends) {
+                        const glm::dvec3 at = place + ra * glm::dvec3(ha.x, end, ha.z);
+                        CHECK(std::min(glm::distance(m.points[0].position, at),
+                                       glm::distance(m.points[1].position, at)) <= 1e-12 * (1.0 + glm::length(place)));
+                    }
+                    CHECK(std::abs(m.depth) <= 1e-14 * (10.0 + glm::length(place)));
+                    if (frame == 1) cache = {};
+                }
+            }
+        }
+        CHECK(meeting > 40000);
+    }
+
     TEST_CASE("crates in frames of their own meet iff exact integers say so, at all ranges of sizes") {
         RandomShapes random(43);
         int meeting = 0, apart = 0;

@@ -105,8 +105,21 @@ TEST_SUITE("convex/features") {
             const Shape surface = Shape::mesh(tree).value(),
                         triangle = Shape::triangle(mesh.positions[0], mesh.positions[1], mesh.positions[2]).value(),
                         round = i % 2 == 0 ? Shape::sphere(0.3).value() : Shape::capsule(0.7f, 0.2f).value();
-            const CasePair where =
-                nearly_touching(random, triangle, round, -std::pow(10.0, random.number(-6, -2)), 0.0);
+            const double depth = std::pow(10.0, random.number(-6, -2));
+            CasePair where = nearly_touching(random, triangle, round, -depth, 0.0);
+            if (i % 3 != 0) {  // else at a corner, most likely: below its end, the middle of an edge or of the face
+                const auto corner = [&](int k) { return where.pose_a.rotation * triangle.vertex(k); };
+                const glm::dvec3 edge = corner(1) - corner(0),
+                                 normal = glm::normalize(glm::cross(edge, corner(2) - corner(0))),
+                                 out = glm::normalize(glm::cross(edge, normal));
+                const bool at_edge = i % 3 == 1;
+                const glm::dvec3 below = at_edge ? 0.5 * (corner(0) + corner(1))
+                                                 : (corner(0) + corner(1) + corner(2)) / 3.0,
+                                 up = at_edge ? glm::normalize(out + random.number(-1, 1) * normal) : normal,
+                                 side = glm::normalize(glm::cross(up, edge));
+                where.pose_b = {glm::dmat3(side, up, glm::cross(side, up)),
+                                where.pose_a.translation + below + ((i % 2 == 0 ? 0.3 : 0.9) - depth) * up};
+            }
             const ShapeAtPose part{triangle, where.pose_a}, other{round, where.pose_b};
             Manifolds found;
             contact_manifolds({surface, where.pose_a}, other, {.max_points = 8}, found);

@@ -86,6 +86,7 @@ BoxClip::BoxClip(const ShapeAtPose& a, const ShapeAtPose& b, const BoxPair& pair
       seen_(pair.seen_by(reference_is_a)),
       direction_(pair.into_frame(reference_is_a, reference_is_a ? direction : -direction)),
       reference_is_a_(reference_is_a),
+      rounding_(4.0 * pair.error()),
       face_(face),
       k_(face / 2),
       u_(k_ == 2 ? 0 : k_ + 1),
@@ -153,22 +154,24 @@ void BoxClip::find_straight_corners() {
 
 // Returns the number of corners in `to`, which has room for kMost + 1, or −1 with nothing written where none is
 // outside.
-int BoxClip::clip_side(const FlatCorner* from, int count, int side, double level, int face, FlatCorner* to) {
-    const FaceSide& at = kSides[face].side[side];
+int BoxClip::clip_side(const FlatCorner* from, int count, int side, double level, FlatCorner* to) const {
+    const FaceSide& at = kSides[face_].side[side];
     const bool of_x = at.axis == 0;
     const double sign = at.sign;
     double height[kMost + 1];
     unsigned outside = 0, inside = 0;
     for (int i = 0; i < count; ++i) {
         height[i] = sign * (of_x ? from[i].x : from[i].y) - level;
-        outside |= (height[i] > 0.0 ? 1U : 0U) << i;
-        inside |= (height[i] < 0.0 ? 1U : 0U) << i;
+        outside |= (height[i] > rounding_ ? 1U : 0U) << i;
+        inside |= (height[i] < -rounding_ ? 1U : 0U) << i;
     }
     if (outside == 0) return -1;
     height[count] = height[0];
     const unsigned outside_next = (outside | (outside & 1U) << count) >> 1,
                    inside_next = (inside | (inside & 1U) << count) >> 1;
-    const unsigned leaves = inside & outside_next, enters = outside & inside_next;
+    // Two corners are a segment, which crosses the side once.
+    const unsigned edges = count == 2 ? 1U : ~0U, leaves = inside & outside_next & edges,
+                   enters = outside & inside_next & edges;
     // A corner on the side, after which the polygon is outside, has the side after it.
     const unsigned turns = ~(inside | outside) & outside_next;
     int kept = 0;
@@ -178,7 +181,8 @@ int BoxClip::clip_side(const FlatCorner* from, int count, int side, double level
         kept += static_cast<int>(~outside >> i & 1U);
         if (((leaves | enters | turns) >> i & 1U) == 0) continue;
         if ((turns >> i & 1U) != 0) {
-            to[kept - 1].lines = lines(before_of(p.lines), -1 - side);
+            const int after = after_of(p.lines);  // of a corner of the reference another side
+            to[kept - 1].lines = lines(after < 0 ? after : before_of(p.lines), -1 - side);
             continue;
         }
         const FlatCorner& q = from[i + 1 == count ? 0 : i + 1];
@@ -201,8 +205,8 @@ void BoxClip::clip() {
     const double reach[2][2] = {{-left, right}, {-lowest, highest}};
     for (int side = 0; side < 4 && count_ > 0; ++side) {
         const FaceSide& at = kSides[face_].side[side];
-        if (reach[at.axis][at.sign > 0.0 ? 1 : 0] <= level[at.axis]) continue;
-        const int kept = clip_side(now, count_, side, level[at.axis], face_, next);
+        if (reach[at.axis][at.sign > 0.0 ? 1 : 0] <= level[at.axis] + rounding_) continue;
+        const int kept = clip_side(now, count_, side, level[at.axis], next);
         if (kept < 0) continue;
         count_ = kept;
         std::swap(now, next);

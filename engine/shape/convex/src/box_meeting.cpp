@@ -43,38 +43,9 @@ bool are_parallel(const glm::dvec3& u, const glm::dvec3& v) {
            is_difference_zero(u.x, v.y, u.y, v.x);
 }
 
-// A sum whose terms are added one by one, and bounds on what it is off by.
-struct RoughSum {
-    double sum = 0.0, error = 0.0;
-    void add(double term) {
-        const auto [high, low] = detail::two_sum(sum, term);
-        sum = high;
-        error += std::abs(low);
-    }
-    void add_product(double a, double b) {
-        const auto [high, low] = product(a, b);
-        add(high);
-        error += std::abs(low);
-    }
-    // 2 for those of adding up the errors.
-    [[nodiscard]] bool is_sure() const { return error == 0.0 || std::abs(sum) > 2.0 * error; }
-};
-
-// Whether each of the frame's axes is one of the world's, or its opposite.
-bool has_straight_axes(const glm::dmat3& r) {
-    const auto along_one = [](const glm::dvec3& v) {
-        const int zeros = static_cast<int>(v.x == 0.0) + static_cast<int>(v.y == 0.0) + static_cast<int>(v.z == 0.0);
-        return zeros == 2 && std::abs(v.x + v.y + v.z) == 1.0;
-    };
-    return along_one(r[0]) && along_one(r[1]) && along_one(r[2]);
-}
-
-// The same of two boxes in one such frame, along its axis k.
-bool straight_boxes_overlap(const Pair& pair, int k) {
-    const glm::dvec3& axis = pair.pose_a.rotation[k];
-    const int i = axis.x != 0.0 ? 0 : axis.y != 0.0 ? 1 : 2;
-    const double a = pair.pose_a.translation[i], b = pair.pose_b.translation[i], half_a = pair.a.half_extents()[k],
-                 half_b = pair.b.half_extents()[k], low = std::min(a, b), high = std::max(a, b);
+// Of two boxes, along a coordinate: where their centers are, and the edges that lead along it.
+bool overlap_along_line(double a, double b, double half_a, double half_b) {
+    const double low = std::min(a, b), high = std::max(a, b);
     const auto apart = detail::two_sum(high, -low), radius = detail::two_sum(half_a, half_b);
     // The difference of two numbers as near as these is exact, and so is the sign of a sum of two.
     const double rough = radius.high - apart.high, rest = radius.low - apart.low;
@@ -83,20 +54,61 @@ bool straight_boxes_overlap(const Pair& pair, int k) {
     return (exact_sum(half_a, half_b) - exact_difference(high, low)).sign() >= 0;
 }
 
+// The edge that is coordinate k's axis or its opposite, while the two others are across it, all exactly; -1: none.
+int upright_edge(const glm::dmat3& edges, int k) {
+    int upright = -1;
+    for (int i = 0; i < 3; ++i) {
+        const double along = coordinate(edges[i], k);
+        if (along == 0.0) continue;
+        const bool is_axis =
+            std::abs(along) == 1.0 && coordinate(edges[i], kNext[k]) == 0.0 && coordinate(edges[i], kLast[k]) == 0.0;
+        if (upright >= 0 || !is_axis) return -1;
+        upright = i;
+    }
+    return upright;
+}
+
+// The axes across edge i of a, and across edge j of b.
+constexpr int products_with(int i, int j) {
+    return (7 << 6) << 3 * i | (73 << 6) << j;
+}
+
+// A number of two doubles: `high` and what it lacks. Sums and products of such keep twice the digits.
+struct Doubled {
+    double high = 0.0, low = 0.0;
+    void add(double term) {
+        const auto [sum, rest] = detail::two_sum(high, term);
+        high = sum;
+        low += rest;
+    }
+    void add_product(const Doubled& a, double b) {
+        const auto [product, rest] = detail::two_product(a.high, b);
+        add(product);
+        low += rest + a.low * b;
+    }
+    [[nodiscard]] double value() const { return high + low; }
+};
+
 using ExactNormal = Expansion<4>[3];
 
 // How much the boxes a and b overlap along a normal, times its length; exactly.
 class MeetingBoxes {
   public:
     MeetingBoxes(const Pair& pair)
-        : half_a_(pair.a.half_extents()), half_b_(pair.b.half_extents()), a_(pair.pose_a), b_(pair.pose_b) {}
+        : half_a_(pair.a.half_extents()),
+          half_b_(pair.b.half_extents()),
+          a_(pair.pose_a),
+          b_(pair.pose_b),
+          doubt_(0x1p-93 * pair.size) {
+        for (int k = 0; k < 3; ++k) {
+            const auto [high, low] = detail::two_sum(b_.translation[k], -a_.translation[k]);
+            way_[k] = {high, low};
+        }
+    }
 
-    [[nodiscard]] bool overlap_along(const glm::dvec3& u, const glm::dvec3& v) {
-        // Of a floor's faces the normal is along a coordinate.
-        bool zero[3];
-        for (int k = 0; k < 3; ++k) zero[k] = is_difference_zero(u[kNext[k]], v[kLast[k]], u[kLast[k]], v[kNext[k]]);
-        for (int k = 0; k < 3; ++k)
-            if (zero[kNext[k]] && zero[kLast[k]]) return zero[k] || overlap_along_coordinate_once(k);
+    // Along u × v.
+    [[nodiscard]] bool overlap_along(const glm::dvec3& u, const glm::dvec3& v) const {
+        if (const double rough = rough_overlap(u, v); std::abs(rough) > doubt_) return rough > 0.0;
         ExactNormal normal;
         for (int k = 0; k < 3; ++k)
             normal[k] = exact_product(u[kNext[k]], v[kLast[k]]) - exact_product(u[kLast[k]], v[kNext[k]]);
@@ -104,29 +116,39 @@ class MeetingBoxes {
     }
 
   private:
-    // Of upright boxes many products of edges are along one coordinate.
-    [[nodiscard]] bool overlap_along_coordinate_once(int k) {
-        if (!overlap_known_[k]) overlap_known_[k] = overlap_along_coordinate(k);
-        return overlap_known_[k];
-    }
-    [[nodiscard]] bool overlap_along_coordinate(int k) const {
-        const auto apart = detail::two_sum(b_.translation[k], -a_.translation[k]);
-        const double sign = apart.high < 0.0 ? 1.0 : -1.0;
-        RoughSum rough;
-        rough.add(sign * apart.high);
-        rough.add(sign * apart.low);
-        for (int i = 0; i < 3; ++i) {
-            rough.add_product(half_a_[i], std::abs(a_.rotation[i][k]));
-            rough.add_product(half_b_[i], std::abs(b_.rotation[i][k]));
+    // Let w be 2^-53, and edges have the length 1. A coordinate of the normal is off by 6w², its low part is 4w; a
+    // product with an edge is off by 370w², its low part is 38w; a radius of half extent h is off by 410w² h, or twice
+    // that with the wrong sign. The way's product is off by 420w² of the size, or twice. Half extents together are 1.8
+    // times the size, partial sums below 2.8 times; the low parts of the last sum are 125w, which 20 additions round
+    // by 2500w². All of that is below 2^13 w² of the size, which is `doubt_`.
+    [[nodiscard]] double rough_overlap(const glm::dvec3& u, const glm::dvec3& v) const {
+        Doubled normal[3];
+        for (int k = 0; k < 3; ++k) {
+            const auto p = detail::two_product(coordinate(u, kNext[k]), coordinate(v, kLast[k])),
+                       q = detail::two_product(coordinate(u, kLast[k]), coordinate(v, kNext[k]));
+            normal[k] = {p.high, p.low - q.low};
+            normal[k].add(-q.high);
         }
-        if (rough.is_sure()) return rough.sum >= 0.0;
-        const auto radius = [k](const glm::dvec3& half, const RigidTransform& pose) {
-            return (exact_product(half[0], std::abs(pose.rotation[0][k])) +
-                    exact_product(half[1], std::abs(pose.rotation[1][k]))) +
-                   exact_product(half[2], std::abs(pose.rotation[2][k]));
+        Doubled overlap;
+        const auto add_radius = [&](const glm::dvec3& half, const glm::dmat3& edges) {
+            for (int i = 0; i < 3; ++i) {
+                if (edges[i] == u || edges[i] == v) continue;  // across the normal
+                Doubled along;
+                for (int k = 0; k < 3; ++k) along.add_product(normal[k], coordinate(edges[i], k));
+                overlap.add_product(along, along.value() < 0.0 ? -coordinate(half, i) : coordinate(half, i));
+            }
         };
-        const Expansion<2> way = exact_difference(b_.translation[k], a_.translation[k]);
-        return ((radius(half_a_, a_) + radius(half_b_, b_)) - (way.sign() < 0 ? -way : way)).sign() >= 0;
+        add_radius(half_a_, a_.rotation);
+        add_radius(half_b_, b_.rotation);
+        Doubled way;
+        for (int k = 0; k < 3; ++k) {
+            way.add_product(normal[k], way_[k].high);
+            way.low += normal[k].high * way_[k].low;
+        }
+        const double sign = way.value() < 0.0 ? 1.0 : -1.0;
+        overlap.add(sign * way.high);
+        overlap.low += sign * way.low;
+        return overlap.value();
     }
 
     template <std::size_t N>
@@ -148,28 +170,39 @@ class MeetingBoxes {
 
     const glm::dvec3 &half_a_, &half_b_;
     const RigidTransform &a_, &b_;
-    bool overlap_known_[3] = {false, false, false};  // along the coordinates
+    Doubled way_[3];  // from a's origin to b's
+    double doubt_;
 };
 
 }  // namespace
 
 // Edges that are parallel have no axis across them. If edge i of a is parallel to one of b, what is across edge i and
-// another of b is across two edges of b: a face's axis. The same holds where edge j of b is parallel to one of a.
+// another of b is across two edges of b: a face's axis. The same holds where edge j of b is parallel to one of a. If
+// both are upright, what is across two others is along their coordinate, as their own faces' axis is.
 std::optional<bool> BoxPair::meet_exactly() const {
-    if (straight_ || (common_frame_ && has_straight_axes(pair_.pose_a.rotation))) {
+    const glm::dmat3 &ra = pair_.pose_a.rotation, &rb = pair_.pose_b.rotation;
+    const auto edges_overlap = [this](int k, int i, int j) {
+        return overlap_along_line(coordinate(pair_.pose_a.translation, k), coordinate(pair_.pose_b.translation, k),
+                                  coordinate(half_a_, i), coordinate(half_b_, j));
+    };
+    if (straight_) {
         for (int k = 0; k < 3; ++k)
-            if ((near_ >> k & 1) != 0 && !straight_boxes_overlap(pair_, k)) return false;
+            if ((near_ >> k & 1) != 0 && !edges_overlap(k, k, k)) return false;
         return true;
     }
-    if (!is_moderate({pair_.a, pair_.pose_a}) || !is_moderate({pair_.b, pair_.pose_b})) return std::nullopt;
-    const glm::dmat3 &ra = pair_.pose_a.rotation, &rb = pair_.pose_b.rotation;
     int near = near_;
-    for (int n = 0; n < 9; ++n) {
-        if ((slivers_ >> n & 1) == 0 || !are_parallel(ra[n / 3], rb[n % 3])) continue;
-        constexpr int kRow = 7 << 6, kColumn = 73 << 6;
-        near &= ~(kRow << 3 * (n / 3) | kColumn << n % 3);
+    for (int k = 0; k < 3 && near != 0; ++k) {
+        const int i = upright_edge(ra, k), j = i < 0 ? i : upright_edge(rb, k);
+        if (j < 0) continue;
+        const int along = 1 << i | 8 << j | (0x7fc0 & ~products_with(i, j));
+        if ((near & along) != 0 && !edges_overlap(k, i, j)) return false;
+        near &= ~(along | products_with(i, j));
     }
-    MeetingBoxes boxes(pair_);
+    if (near == 0) return true;
+    if (!is_moderate({pair_.a, pair_.pose_a}) || !is_moderate({pair_.b, pair_.pose_b})) return std::nullopt;
+    for (int n = 0; n < 9; ++n)
+        if ((slivers_ >> n & 1) != 0 && are_parallel(ra[n / 3], rb[n % 3])) near &= ~products_with(n / 3, n % 3);
+    const MeetingBoxes boxes(pair_);
     for (int n = 0; n < 15; ++n) {
         if ((near >> n & 1) == 0) continue;
         const bool overlap = n < 3   ? boxes.overlap_along(ra[kNext[n]], ra[kLast[n]])

@@ -112,19 +112,21 @@ void BoxPair::try_edges(BoxAxis& least) {
         const int u = kNext[i], v = kLast[i];
         const double uu = glm::dot(to_a_[u], to_a_[u]), uv = 2.0 * glm::dot(to_a_[u], to_a_[v]),
                      vv = glm::dot(to_a_[v], to_a_[v]);
+        const double half_au = coordinate(half_a_, u), half_av = coordinate(half_a_, v), at_u = coordinate(at_, u),
+                     at_v = coordinate(at_, v);
         for (int j = 0; j < 3; ++j) {
-            const double mu = -edge_[j][v], mv = edge_[j][u];
+            const double mu = -coordinate(edge_[j], v), mv = coordinate(edge_[j], u);
             const double squared = (uu * mu * mu + vv * mv * mv) + uv * mu * mv;
-            const double radius_a = half_a_[u] * std::abs(mu) + half_a_[v] * std::abs(mv);
-            const double radius_b =
-                half_b_[kNext[j]] * std::abs(across_[kLast[j]][i]) + half_b_[kLast[j]] * std::abs(across_[kNext[j]][i]);
-            const double extent = (radius_a + radius_b) - std::abs(mu * at_[u] + mv * at_[v]);
+            const double radius_a = half_au * std::abs(mu) + half_av * std::abs(mv);
+            const double radius_b = coordinate(half_b_, kNext[j]) * std::abs(coordinate(across_[kLast[j]], i)) +
+                                    coordinate(half_b_, kLast[j]) * std::abs(coordinate(across_[kNext[j]], i));
+            const double extent = (radius_a + radius_b) - std::abs(mu * at_u + mv * at_v);
             const double best = least.extent - depth_margin_;
             near_ |= (extent > error_ ? 0 : 1) << (6 + 3 * i + j);
             if (!(squared > kParallel)) {
                 slivers_ |= 1 << (3 * i + j);
-                sliver_width_ =
-                    std::max(sliver_width_, 2.0 * std::min(half_a_[i], half_b_[j]) * (std::sqrt(squared) + 4e-15));
+                sliver_width_ = std::max(sliver_width_, 2.0 * std::min(coordinate(half_a_, i), coordinate(half_b_, j)) *
+                                                            (std::sqrt(squared) + 4e-15));
                 continue;
             }
             // Most axes are deeper, which needs no root to be seen.

@@ -125,7 +125,7 @@ class BoxClip {
         unsigned lines;
     };
     static constexpr int kMost = 8;  // four corners and four sides; roundings can add one, which is left out
-    static int clip_side(const FlatCorner* from, int count, int side, double level, int face, FlatCorner* to);
+    int clip_side(const FlatCorner* from, int count, int side, double level, FlatCorner* to) const;
     void find_corners(int incident_face);
     void find_straight_corners();
     [[nodiscard]] double level() const;  // of the reference face along its axis
@@ -135,6 +135,7 @@ class BoxClip {
     BoxPair::Seen seen_;
     glm::dvec3 direction_;  // unit, out of the reference, in its frame
     bool reference_is_a_;
+    double rounding_;  // corners that are nearer to a side lie on it: a polygon as narrow is an edge
     int face_, incident_ = 0, k_, u_, v_, count_ = 0;
     FlatCorner corner_[kMost + 1];
 };

@@ -74,7 +74,8 @@ void BoxToucher::add_deepest(const glm::dvec3& on_a, const glm::dvec3& on_b, Fea
     touch_.feature_a = feature_a;
     touch_.feature_b = feature_b;
     touch_.known = true;
-    Gatherer gatherer({a_.pose.translation, a_.shape.radius(), b_.shape.radius(), margin_}, touch_, points_);
+    Gatherer gatherer({a_.pose.translation, a_.shape.radius(), b_.shape.radius(), margin_, pair_.size}, touch_,
+                      points_);
     if (gatherer.lacks_deepest(1e-9 * pair_.size)) gatherer.add_deepest();
 }
 

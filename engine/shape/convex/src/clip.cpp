@@ -15,27 +15,33 @@ struct ClipCorner {
     int before, after;
 };
 
-// Returns −1 − the number of corners in `to`, or `count` with nothing written where none is outside. Two corners are a
-// segment, which crosses the side once.
+// Of the size: corners that are nearer to a side lie on it, so that a polygon as narrow is an edge.
+constexpr double kOnSide = 0x1p-44;
+
+// Corners within `near` of the side are on it. Returns −1 − the number of corners in `to`, or `count` with nothing
+// written where none is outside. Two corners are a segment, which crosses the side once.
 template <class Height>
-int clip_side(const ClipCorner* from, int count, Height height_of, int side, ClipCorner* to) {
+int clip_side(const ClipCorner* from, int count, Height height_of, int side, double near, ClipCorner* to) {
     double height[kMaxClipped + 1], most = 0.0;
     for (int i = 0; i < count; ++i) {
         height[i] = height_of(from[i].point);
         most = height[i] > most ? height[i] : most;
     }
-    if (most == 0.0) return count;
+    if (most <= near) return count;
     height[count] = height[0];
     int kept = 0;
     for (int i = 0; i < count; ++i) {
         const ClipCorner& a = from[i];
         const double ha = height[i], hb = height[i + 1];
-        if (ha <= 0.0) {
+        if (ha <= near) {
             to[kept] = a;
-            if (ha == 0.0 && hb > 0.0) to[kept].after = -1 - side;
+            if (ha >= -near && hb > near) {
+                if (a.after < 0) to[kept].before = a.after;  // a corner of the reference
+                to[kept].after = -1 - side;
+            }
             ++kept;
         }
-        if (((ha < 0.0 && hb > 0.0) || (ha > 0.0 && hb < 0.0)) && (count > 2 || i == 0)) {
+        if (((ha < -near && hb > near) || (ha > near && hb < -near)) && (count > 2 || i == 0)) {
             const glm::dvec3& b = from[i + 1 == count ? 0 : i + 1].point;
             to[kept].point = a.point + ha / (ha - hb) * (b - a.point);
             to[kept].before = ha < 0.0 ? a.after : -1 - side;
@@ -73,7 +79,7 @@ Feature reference_feature(const Feature& self, const std::uint16_t* vertex, cons
 
 // Short edges are taken from the shape's own numbers. They may turn inward by the unevenness of a hull's face, so that
 // they bound the polygon from farther out, where all of its corners are inside.
-void find_sides(const Patch& polygon, const glm::dvec3& direction, Prism& sides) {
+void find_sides(const Patch& polygon, const glm::dvec3& direction, double size, Prism& sides) {
     sides.count = polygon.count;
     double longest2 = 0.0, farthest2 = 0.0;
     for (int k = 0; k < polygon.count; ++k) {
@@ -89,6 +95,7 @@ void find_sides(const Patch& polygon, const glm::dvec3& direction, Prism& sides)
         if (length2 <= 1e-12 * farthest2) edge = exact_edge(polygon, k);
         sides.outward[k] = glm::cross(edge, direction);
         sides.level[k] = glm::dot(sides.outward[k], p);
+        sides.near[k] = kOnSide * size * glm::length(sides.outward[k]);
         for (int i = 0; is_short && i < polygon.count; ++i)
             sides.level[k] = std::max(sides.level[k], glm::dot(sides.outward[k], polygon.point[i]));
     }
@@ -108,11 +115,12 @@ void clip(const Patch& reference, const Prism& sides, const Patch& incident, con
         const auto height = [&sides, side](const glm::dvec3& p) {
             return glm::dot(sides.outward[side], p) - sides.level[side];
         };
-        const int kept = clip_side(buffers[current], count, height, side, buffers[1 - current]);
+        const int kept = clip_side(buffers[current], count, height, side, sides.near[side], buffers[1 - current]);
         if (kept >= 0) continue;
         count = -1 - kept;
         current = 1 - current;
     }
+    if (incident.count == 2 && count == 1) return;  // it touches the rim alone: the deepest point names that better
     for (int i = 0; i < count; ++i) {
         const ClipCorner& corner = buffers[current][i];
         const double height = glm::dot(reference.normal, corner.point - reference.point[0]) / steepness;
@@ -123,8 +131,13 @@ void clip(const Patch& reference, const Prism& sides, const Patch& incident, con
     }
 }
 
-BoxFace::BoxFace(const ShapeAtPose& box, int face, const glm::dmat3& to_local, const glm::dvec3& origin)
-    : box_(box), to_local_(to_local), offset_(box.pose.translation - origin), face_(face), k_(face / 2) {
+BoxFace::BoxFace(const ShapeAtPose& box, int face, const glm::dmat3& to_local, const glm::dvec3& origin, double size)
+    : box_(box),
+      to_local_(to_local),
+      offset_(box.pose.translation - origin),
+      face_(face),
+      k_(face / 2),
+      near_(kOnSide * size) {
     u_ = k_ == 2 ? 0 : k_ + 1;
     v_ = k_ == 0 ? 2 : k_ - 1;
     level_ = (face & 1) != 0 ? box.shape.half_extents()[k_] : -box.shape.half_extents()[k_];
@@ -168,7 +181,7 @@ void BoxFace::clip(const Patch& incident, const glm::dvec3& direction, Clipped& 
         const int axis = sides_[side].axis;
         const double sign = sides_[side].sign, level = h[axis == 0 ? u_ : v_];
         const auto height = [axis, sign, level](const glm::dvec3& p) { return sign * p[axis] - level; };
-        const int kept = clip_side(buffers[current], count, height, side, buffers[1 - current]);
+        const int kept = clip_side(buffers[current], count, height, side, near_, buffers[1 - current]);
         if (kept >= 0) continue;
         count = -1 - kept;
         current = 1 - current;
@@ -238,27 +251,46 @@ int greatest(int count, Value value) {
 // Of points as deep but for rounding that which is farthest from their middle: on a flat floor a corner, not whichever
 // inner point rounding made the deepest.
 int deepest_corner(const ContactPoint* points, int count) {
+    const glm::dvec3& first = points[0].position;
     glm::dvec3 middle(0.0);
-    for (int i = 0; i < count; ++i) middle += points[i].position / static_cast<double>(count);
+    double depth = points[0].depth;
+    for (int i = 1; i < count; ++i) {
+        middle += points[i].position - first;
+        depth = std::max(depth, points[i].depth);
+    }
+    middle *= 1.0 / static_cast<double>(count);
     const auto squared = [&](int i) {
-        const glm::dvec3 way = points[i].position - middle;
+        const glm::dvec3 way = (points[i].position - first) - middle;
         return glm::dot(way, way);
     };
-    const double depth = points[greatest(count, [&](int i) { return points[i].depth; })].depth;
     const double radius = std::sqrt(squared(greatest(count, squared)));
     return greatest(count, [&](int i) { return points[i].depth >= depth - 1e-9 * radius ? squared(i) : -1.0; });
+}
+
+// The first points that are farthest along d and against it.
+struct Ends {
+    int high = 0, low = 0;
+};
+Ends ends_along(const ContactPoint* points, int count, const glm::dvec3& from, const glm::dvec3& d) {
+    Ends ends;
+    double most = glm::dot(d, points[0].position - from), least = most;
+    for (int i = 1; i < count; ++i) {
+        const double along = glm::dot(d, points[i].position - from);
+        if (along > most) most = along, ends.high = i;
+        if (along < least) least = along, ends.low = i;
+    }
+    return ends;
 }
 
 }  // namespace
 
 void thin_out(Manifold& manifold, const ContactPoint* points, int count, int most) {
     int kept[16], chosen = 0;
-    const bool all = count <= most;
     const auto keep = [&](int i) {
         if (chosen < most && std::find(kept, kept + chosen, i) == kept + chosen) kept[chosen++] = i;
         return i;
     };
-    if (all) {
+    if (count <= most) {
         for (; chosen < count; ++chosen) kept[chosen] = chosen;
     } else {
         const glm::dvec3 from = points[keep(deepest_corner(points, count))].position;
@@ -268,16 +300,15 @@ void thin_out(Manifold& manifold, const ContactPoint* points, int count, int mos
         };
         const glm::dvec3 along = points[keep(greatest(count, squared))].position - from;
         const glm::dvec3 across = glm::cross(manifold.normal, along);
-        const auto keep_farthest = [&](const glm::dvec3& d) {
-            if (chosen < most)
-                keep(greatest(count, [&points, &from, d](int i) { return glm::dot(d, points[i].position - from); }));
-        };
-        keep_farthest(across);
-        keep_farthest(-across);
-        for (const double turn : {1.0, -1.0})
-            for (const double side : {1.0, -1.0}) keep_farthest(turn * along + side * across);
+        const auto ends = [&](const glm::dvec3& d) { return ends_along(points, count, from, d); };
+        const Ends sides = ends(across);
+        keep(sides.high), keep(sides.low);
+        if (chosen < most) {
+            const Ends left = ends(along + across), right = ends(along - across);
+            keep(left.high), keep(right.high), keep(right.low), keep(left.low);
+        }
+        std::sort(kept, kept + chosen);
     }
-    if (!all) std::sort(kept, kept + chosen);
     manifold.count = chosen;
     manifold.depth = points[kept[0]].depth;
     for (int i = 0; i < chosen; ++i) {

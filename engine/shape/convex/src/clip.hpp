@@ -16,13 +16,14 @@ struct Clipped {
     ClippedPoint point[kMaxClipped];
 };
 
-// The sides of the prism over a polygon along a direction: inside is dot(outward, x) ≤ level.
+// The sides of the prism over a polygon along a direction: inside is dot(outward, x) ≤ level. Within `near` of the
+// level counts as on the side.
 struct Prism {
     int count = 0;
     glm::dvec3 outward[kMaxPatch];
-    double level[kMaxPatch];
+    double level[kMaxPatch], near[kMaxPatch];
 };
-void find_sides(const Patch& polygon, const glm::dvec3& direction, Prism& sides);
+void find_sides(const Patch& polygon, const glm::dvec3& direction, double size, Prism& sides);
 
 // The part of the incident patch within the prism over the reference polygon along `direction` (unit, out of the
 // reference), and its shadow on the reference's plane. Nothing where that plane is nearly along the direction.
@@ -32,8 +33,8 @@ void clip(const Patch& reference, const Prism& sides, const Patch& incident, con
 // The same where the reference is the face of a box: in the frame of the box, where the sides are its half extents.
 class BoxFace {
   public:
-    // `to_local` is the inverse of the pose's rotation; points are around `origin`.
-    BoxFace(const ShapeAtPose& box, int face, const glm::dmat3& to_local, const glm::dvec3& origin);
+    // `to_local` is the inverse of the pose's rotation; points are around `origin`; `size` is the pair's.
+    BoxFace(const ShapeAtPose& box, int face, const glm::dmat3& to_local, const glm::dvec3& origin, double size);
     void clip(const Patch& incident, const glm::dvec3& direction, Clipped& clipped) const;
     // How far a point is within the sides of the prism along the face's own axis: the least distance, negative outside.
     [[nodiscard]] double distance_within(const glm::dvec3& point) const;
@@ -47,7 +48,7 @@ class BoxFace {
     const glm::dmat3& to_local_;
     glm::dvec3 offset_;
     int face_, k_, u_, v_;  // the face's axis and the two along it
-    double level_;          // of the face along its axis
+    double level_, near_;   // of the face along its axis; as of a prism's sides
     Side sides_[4];         // in the order of the face's edges
 };
 

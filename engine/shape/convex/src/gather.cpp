@@ -95,7 +95,7 @@ int gather_patches(const Patch& a, const Patch& b, const glm::dvec3& normal, Cli
     const bool reference_is_a = along_a >= along_b - 1e-3 && a.count > 2;
     const glm::dvec3 out = reference_is_a ? normal : -normal;
     Prism sides;
-    find_sides(reference_is_a ? a : b, out, sides);
+    find_sides(reference_is_a ? a : b, out, gatherer.size(), sides);
     clip(reference_is_a ? a : b, sides, reference_is_a ? b : a, out, clipped);
     gatherer.add(clipped, reference_is_a);
     return reference_is_a ? 1 : 2;
@@ -117,7 +117,7 @@ void add_support(const Patch& face, const glm::dvec3& out, const glm::dvec3& dee
     const double steepness = face.count > 2 ? glm::dot(face.normal, out) : 0.0;
     if (!(steepness > 0.05)) return;
     Prism sides;
-    find_sides(face, out, sides);
+    find_sides(face, out, gatherer.size(), sides);
     for (int k = 0; k < sides.count; ++k)
         if (glm::dot(sides.outward[k], deepest) > sides.level[k]) return;
     const glm::dvec3 shadow = deepest - glm::dot(face.normal, deepest - face.point[0]) / steepness * out;

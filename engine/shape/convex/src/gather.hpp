@@ -10,10 +10,10 @@ struct GatheredPoints {
     ContactPoint point[kMaxClipped + 1];
 };
 
-// Two shapes as the gatherer sees them: a's origin, and how far the surfaces are from the cores.
+// Two shapes as the gatherer sees them: a's origin, how far the surfaces are from the cores, and the pair's size.
 struct Gathering {
     const glm::dvec3& origin;
-    double radius_a, radius_b, margin;
+    double radius_a, radius_b, margin, size;
 };
 
 class Gatherer {
@@ -25,6 +25,7 @@ class Gatherer {
     void add(const Clipped& clipped, bool reference_is_a);
     // Whether the patches have left out the deepest place by more than `tolerance`.
     [[nodiscard]] bool lacks_deepest(double tolerance) const;
+    [[nodiscard]] double size() const { return of_.size; }
     // In place of a point with the same id, where there is one. The touch's features are known.
     void add_deepest();
 

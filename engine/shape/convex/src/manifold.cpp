@@ -19,8 +19,8 @@ Manifold nothing() {
     return manifold;
 }
 
-Gathering gathering_of(const ShapeAtPose& a, const ShapeAtPose& b, double margin) {
-    return {a.pose.translation, a.shape.radius(), b.shape.radius(), margin};
+Gathering gathering_of(const ShapeAtPose& a, const ShapeAtPose& b, double size, double margin) {
+    return {a.pose.translation, a.shape.radius(), b.shape.radius(), margin, size};
 }
 
 // A point's id in one number that is not 0. Features of convex shapes have indices below 1024.
@@ -72,7 +72,7 @@ Manifold finish(const GatheredPoints& points, const Touch& touch, const Manifold
 Manifold gather_clipped(const ShapeAtPose& a, const ShapeAtPose& b, const Pair& pair, const Touch& touch,
                         const Clipped& clipped, const ManifoldOptions& options, PairCache& cache) {
     GatheredPoints points;
-    Gatherer gatherer(gathering_of(a, b, options.margin), touch, points);
+    Gatherer gatherer(gathering_of(a, b, pair.size, options.margin), touch, points);
     gatherer.add(clipped, cache.reference == 1);
     if (gatherer.lacks_deepest(1e-9 * pair.size)) gatherer.add_deepest();
     return finish(points, touch, options, pair.size, &cache);
@@ -91,7 +91,7 @@ Manifold on_half_space(const ShapeAtPose& a, const ShapeAtPose& b, const Manifol
     Patch patch;
     patch_along(b, -gap.outward, a.pose.translation, patch);
     GatheredPoints points;
-    Gatherer gatherer(gathering_of(a, b, options.margin), touch, points);
+    Gatherer gatherer(gathering_of(a, b, b.shape.core_radius(), options.margin), touch, points);
     const glm::dvec3 deepest = gap.deepest - a.pose.translation;
     const auto shadow = [&](const glm::dvec3& p) {
         return p - (glm::dot(p - deepest, gap.outward) + gap.gap) * gap.outward;
@@ -146,7 +146,7 @@ Manifold contact_manifold(const ShapeAtPose& a, const ShapeAtPose& b, const Mani
     patch_along(a, touch.normal, a.pose.translation, patch_a);
     patch_along(b, -touch.normal, a.pose.translation, patch_b);
     GatheredPoints points;
-    Gatherer gatherer(gathering_of(a, b, options.margin), touch, points);
+    Gatherer gatherer(gathering_of(a, b, pair.size, options.margin), touch, points);
     const bool round = pair.rounding() > 0.0 || !pair.has_polytope_cores();
     const bool at_edges = round && gather_parallel_edges({&a, patch_a}, {&b, patch_b}, touch.normal, a.pose.translation,
                                                          pair.size, clipped, gatherer);

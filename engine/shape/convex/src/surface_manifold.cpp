@@ -37,9 +37,10 @@ double deepest(const GatheredPoints& points) {
 }  // namespace
 
 SurfaceContacts::SurfaceContacts(const NearSurface& surface, const ShapeAtPose& shape, double margin)
-    : surface_(surface), shape_(shape), gathering_{surface.pose.translation, 0.0, shape.shape.radius(), margin} {
+    : surface_(surface), shape_(shape), gathering_{surface.pose.translation, 0.0, shape.shape.radius(), margin, 0.0} {
     const glm::dvec3& origin = surface.pose.translation;
     size_ = surface.shape->core_radius() + shape.shape.core_radius() + glm::length(shape.pose.translation - origin);
+    gathering_.size = size_;
     middle_ = middle_of(shape, origin);
     if (shape.shape.kind() == Kind::box) box_.emplace(shape, origin, surface.shape->core_radius(), margin);
     const bool round = shape.shape.kind() == Kind::sphere || shape.shape.kind() == Kind::capsule;
@@ -143,7 +144,7 @@ void SurfaceContacts::gather_patches_along(const PlacedTriangle& t, Gatherer& ga
         return;
     if (box_) {
         const int face = face_along(shape_.shape, Pair::local(shape_.pose.rotation, -normal));
-        BoxFace(shape_, face, box_->to_local(), gathering_.origin).clip(on_triangle, -normal, clipped);
+        BoxFace(shape_, face, box_->to_local(), gathering_.origin, size_).clip(on_triangle, -normal, clipped);
         gatherer.add(clipped, false);
         on_shape.self = {FeatureKind::face, static_cast<std::uint16_t>(face)};
     } else {

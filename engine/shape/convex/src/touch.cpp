@@ -187,12 +187,12 @@ Warm touch_at_face(const ShapeAtPose& a, const ShapeAtPose& b, const Pair& pair,
     double inner = 0.0, drop = 0.0, uneven = 0.0;
     if (on_box) {
         const glm::dmat3 to_local = glm::inverse(reference.pose.rotation);
-        const BoxFace box(reference, cache.face, to_local, a.pose.translation);
+        const BoxFace box(reference, cache.face, to_local, a.pose.translation, pair.size);
         box.clip(other, out, clipped);
         inner = box.distance_within(x);
     } else {
         Prism sides;
-        find_sides(face, out, sides);
+        find_sides(face, out, pair.size, sides);
         clip(face, sides, other, out, clipped);
         inner = distance_within(sides, x);
         uneven = unevenness(face, out);

@@ -345,7 +345,7 @@ double UnionNormals::gather_along(const glm::dvec3& normal, Contact& contact) co
     patch_along(a, normal, a.pose.translation, on_a);
     patch_along(b, -normal, a.pose.translation, on_b);
     GatheredPoints points;
-    Gatherer gatherer({a.pose.translation, a.shape.radius(), b.shape.radius(), margin_}, touch, points);
+    Gatherer gatherer({a.pose.translation, a.shape.radius(), b.shape.radius(), margin_, pair.size}, touch, points);
     Clipped clipped;
     (void)gather_patches(on_a, on_b, normal, clipped, gatherer);
     double extent = 0.0;
