@@ -60,7 +60,8 @@ void InstanceColoring::classify(const LoadedScene& loaded, const pipeline::Frame
             for (const scene::InstanceId i : frame.visible_ids) {
                 tint_of_[i] = verdicts[i] == cull::Verdict::inside ? 0 : 1;
                 if (tint_of_[i] == 1 && frustum &&
-                    counter_.count(loaded.scene(), *frustum, std::span(&i, 1), verdicts).improper > 0)
+                    counter_.count(pipeline::SceneDrawables(loaded.scene()), *frustum, std::span(&i, 1), verdicts)
+                            .improper > 0)
                     tint_of_[i] = 2;
             }
             break;
