@@ -16,6 +16,7 @@
 #include "commands.hpp"
 #include "json/json.hpp"
 #include "pipeline/pipeline.hpp"
+#include "pipeline/region_stream.hpp"
 #include "pipeline/scene_occluders.hpp"
 #include "pvs_cells.hpp"
 #include "read_options.hpp"
@@ -134,7 +135,7 @@ class BakeRun {
   private:
     // Loads the file as an engine would and says how long that took.
     int check() {
-        if (has_regions(options_.scene))
+        if (pipeline::holds_regions(options_.scene))
             return check_regions(options_.scene, options_.read.limits.bytes, options_.json, executor());
         if (assets::extension(options_.scene) != "crofton" && (is_scene() || !std::filesystem::exists(options_.scene)))
             return report_error(

@@ -235,11 +235,6 @@ int write_regions(const assets::SceneSource& source, const RegionBake& bake, con
     return status ? *status : report_error("", status.error());
 }
 
-bool has_regions(const std::string& folder) {
-    std::error_code ignored;
-    return std::filesystem::exists(std::filesystem::path(folder) / bake::kRegionIndexName, ignored);
-}
-
 int check_regions(const std::string& folder, std::uint64_t largest_file, const std::string& json, Executor& executor) {
     const Stopwatch watch;
     const bake::FileOptions access{.largest = largest_file};

@@ -31,7 +31,6 @@ struct RegionBake {
 int write_regions(const assets::SceneSource& source, const RegionBake& bake, const bake::BakeOptions& options,
                   Executor& executor);
 
-[[nodiscard]] bool has_regions(const std::string& folder);
 // Opens all regions of a folder, attaches them to a World, and says how long that took.
 int check_regions(const std::string& folder, std::uint64_t largest_file, const std::string& json, Executor& executor);
 

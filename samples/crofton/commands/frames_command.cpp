@@ -12,7 +12,6 @@
 
 #include "assets/flat_scene.hpp"
 #include "assets/scene_source.hpp"
-#include "bake_regions.hpp"
 #include "commands.hpp"
 #include "frames_drawing.hpp"
 #include "frames_output.hpp"
@@ -68,7 +67,7 @@ double microseconds_since(Clock::time_point start) {
 class FramesRun {
   public:
     explicit FramesRun(FramesOptions options) : options_(std::move(options)) {
-        if (options_.camera.empty()) options_.camera = has_regions(options_.scene) ? "flight" : "orbit";
+        if (options_.camera.empty()) options_.camera = pipeline::holds_regions(options_.scene) ? "flight" : "orbit";
         if (!options_.trace.empty()) trace_ = std::make_unique<TraceFile>();
     }
 
@@ -132,7 +131,7 @@ class FramesRun {
         if (!options_.output.png.empty())
             if (auto made = make_picture_folder(options_.output.png); !made) return made;
         if (options_.threads != 1) pool_.emplace(options_.threads);
-        if (has_regions(options_.scene)) return prepare_regions(*size, aspect);
+        if (pipeline::holds_regions(options_.scene)) return prepare_regions(*size, aspect);
         if (options_.real_time || options_.region_distance > 0.0)
             return fail(ErrorCode::invalid_argument, kNoItem,
                         "--real-time and --region-distance are for a folder of regions, by 'crofton bake --regions'");

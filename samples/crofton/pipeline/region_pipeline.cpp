@@ -279,6 +279,9 @@ std::shared_ptr<const SceneClusters> RegionPipeline::clusters() const {
 const RegionStream& RegionPipeline::stream() const {
     return state_->stream;
 }
+std::span<const cull::Verdict> RegionPipeline::verdicts() const {
+    return state_->verdicts;
+}
 std::uint32_t RegionPipeline::place_of(scene::InstanceId instance) const {
     return state_->drawables->place_of(instance);
 }

@@ -48,6 +48,8 @@ class RegionPipeline {
     [[nodiscard]] std::shared_ptr<const SceneClusters> clusters() const;
 
     [[nodiscard]] const RegionStream& stream() const;
+    // By instance, as of the last run().
+    [[nodiscard]] std::span<const cull::Verdict> verdicts() const;
     // The region of an instance.
     [[nodiscard]] std::uint32_t place_of(scene::InstanceId instance) const;
 

@@ -233,6 +233,11 @@ struct RegionStream::State {
     }
 };
 
+bool holds_regions(const std::string& folder) {
+    std::error_code ignored;
+    return std::filesystem::exists(std::filesystem::path(folder) / bake::kRegionIndexName, ignored);
+}
+
 RegionStream::RegionStream(std::unique_ptr<State> state) : state_(std::move(state)) {}
 RegionStream::~RegionStream() = default;
 RegionStream::RegionStream(RegionStream&&) noexcept = default;

@@ -13,6 +13,9 @@
 
 namespace crofton::pipeline {
 
+// Whether a folder has an index of regions.
+[[nodiscard]] bool holds_regions(const std::string& folder);
+
 // A mesh as it is drawn. Regions of one world that have equal meshes share it.
 struct RegionDrawMesh {
     TriangleMesh mesh;
