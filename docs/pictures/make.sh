@@ -16,6 +16,8 @@ cp "$work"/town/*0003.png town.png
 "$crofton" view "$work/room.glb" --no-window --size 800x450 --script room.json --after 3 --screenshot room.png
 "$crofton" frames town --camera street --frames 120 --size 960x540 --png "$work/street"
 cp "$work"/street/*0035.png street.png
+"$crofton" bake town --instances 200000 --no-occluders --no-clusters --regions 8x8 --threads 0 --folder "$work/regions"
+"$crofton" view "$work/regions" --no-window --size 960x400 --script regions.json --after 6 --screenshot regions.png
 ./crofton.py >crofton.svg
 ./rooms.py >rooms.svg
 if command -v chromium >/dev/null; then

@@ -10,6 +10,7 @@ CROFTON=$(realpath "${1:-$here/../../build/release/bin/crofton}")
 [[ -x $CROFTON ]] || { echo "samples/slurm/test.sh: $CROFTON is not built" >&2; exit 2; }
 folder=$(mktemp -d)
 export CROFTON PARTS=4 SCENE=room PARTS_DIR="$folder/parts" COMMAND OPTIONS
+regions=$folder/regions
 daemons=()
 finish() {
     for ((i = ${#daemons[@]} - 1; i >= 0; --i)); do kill "${daemons[i]}" 2>/dev/null || true; done
@@ -90,30 +91,43 @@ array_by_loop() {
 # check ARRAY: the whole way, with a lost and a repeated part.
 check() {
     local array=$1 status=0
-    rm -rf "$PARTS_DIR"
+    rm -rf "$PARTS_DIR" "$regions" "$sum"
     "$array" 0-3 || wrong "$array: the array failed: $(cat "$folder"/log.*)"
     rm "$PARTS_DIR/part2"
     cp "$PARTS_DIR/part1" "$PARTS_DIR/part1_again"
-    "$CROFTON" merge "$PARTS_DIR"/part* --shards "$PARTS" --out "$folder/sum" 2>"$folder/said" || status=$?
+    "$CROFTON" merge "$PARTS_DIR"/part* --shards "$PARTS" --out "$sum" 2>"$folder/said" || status=$?
     [[ $status -eq 1 ]] || wrong "$array: merge without part 2 ended with $status: $(cat "$folder/said")"
     [[ $(cat "$folder/said") == *"run again: --shard 2/4" ]] || wrong "$array: merge said: $(cat "$folder/said")"
-    ! cmp -s "$folder/sum" "$folder/one" || wrong "$array: the sum is whole without part 2"
+    ! cmp -s "$sum" "$folder/one" || wrong "$array: the sum is whole without part 2"
     "$array" 2-2 || wrong "$array: part 2 failed: $(cat "$folder"/log.*)"
-    "$CROFTON" merge "$PARTS_DIR"/part* --shards "$PARTS" --out "$folder/sum" || wrong "$array: merge of all parts ended with $?"
-    cmp "$folder/sum" "$folder/one" || wrong "$array: the sum is not what one run saves"
+    "$CROFTON" merge "$PARTS_DIR"/part* --shards "$PARTS" --out "$sum" || wrong "$array: merge of all parts ended with $?"
+    cmp "$sum" "$folder/one" || wrong "$array: the sum is not what one run saves"
     echo "$COMMAND, $array: a lost part named and mended, a repeated one counted once, same bytes as one run"
 }
 
 # bake COMMAND OPTIONS: sets what the tasks run, and makes the state of one run.
 bake() {
-    local options
-    COMMAND=$1 OPTIONS=$2
+    local command options
+    COMMAND=$1 OPTIONS=$2 sum=$folder/sum
+    read -r -a command <<<"$COMMAND"
     read -r -a options <<<"$OPTIONS"
     rm -f "$folder/one"
-    "$CROFTON" "$COMMAND" "$SCENE" "${options[@]}" --state "$folder/one" >/dev/null
+    "$CROFTON" "${command[@]}" "$SCENE" "${options[@]}" --state "$folder/one" >/dev/null
 }
 
-bake radiosity '--edge 0.8 --runs 32'
+# check_regions ARRAY: the same for a folder of regions, of which one run makes the index.
+check_regions() {
+    local SCENE=town options='--instances 400 --no-occluders --regions 4x2 --folder'
+    COMMAND=bake OPTIONS="$options $regions" sum=$regions/index.crofton
+    # shellcheck disable=SC2086
+    "$CROFTON" bake "$SCENE" $options "$folder/one_run" >/dev/null
+    cp "$folder/one_run/index.crofton" "$folder/one"
+    check "$1"
+    diff -r "$regions" "$folder/one_run" || wrong "bake: the regions are not those of one run"
+}
+
+check_regions array_by_loop
+bake 'study radiosity' '--edge 0.8 --runs 32'
 check array_by_loop
 bake pvs '--cells 6x2x6 --epsilon 2e-2'
 check array_by_loop
@@ -124,8 +138,9 @@ if [[ -n $reason ]]; then
 fi
 start_cluster
 check array_by_slurm
-bake radiosity '--edge 0.8 --runs 32'
+bake 'study radiosity' '--edge 0.8 --runs 32'
 check array_by_slurm
+check_regions array_by_slurm
 nodes=$(grep -l 'Launching batch job' "$folder"/slurmd.*.log | wc -l)
 [[ $nodes -ge 2 ]] || wrong "all tasks ran on one node"
 echo "tasks ran on $nodes of 3 nodes"

@@ -16,7 +16,9 @@
 #include "commands.hpp"
 #include "json/json.hpp"
 #include "pipeline/pipeline.hpp"
+#include "pipeline/region_stream.hpp"
 #include "pipeline/scene_occluders.hpp"
+#include "pvs_cells.hpp"
 #include "read_options.hpp"
 #include "report.hpp"
 #include "stopwatch.hpp"
@@ -27,7 +29,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 struct BakeOptions {
-    std::string scene, output, folder, regions, map, json, tree = "aligned";
+    std::string scene, output, folder, regions, shard, state, map, json, tree = "aligned";
     std::uint32_t instances = 0;
     std::uint64_t seed = 1;
     unsigned threads = 1;
@@ -111,7 +113,8 @@ class BakeRun {
     }
 
     int run() {
-        const bool writes = !options_.output.empty() || !options_.folder.empty() || !options_.regions.empty();
+        const bool writes = !options_.output.empty() || !options_.folder.empty() || !options_.regions.empty() ||
+                            !options_.shard.empty() || !options_.state.empty();
         const bool is_told_how = !options_.map.empty() || options_.instances != 0 || options_.seed != 1 ||
                                  options_.tree != "aligned" || options_.no_occluders || options_.no_clusters;
         if (!writes && is_told_how)
@@ -121,13 +124,18 @@ class BakeRun {
         if (options_.folder.empty() != options_.regions.empty())
             return report_error(
                 "", {ErrorCode::invalid_argument, kNoItem, "--regions says how many, --folder where to: give both"});
+        if (options_.folder.empty() && !(options_.shard.empty() && options_.state.empty()))
+            return report_error(
+                "", {ErrorCode::invalid_argument, kNoItem, "--shard and --state are of regions: give --regions too"});
+        if (!options_.shard.empty() && options_.state.empty())
+            return report_error("", {ErrorCode::invalid_argument, kNoItem, "--shard needs --state: the part to write"});
         return write();
     }
 
   private:
     // Loads the file as an engine would and says how long that took.
     int check() {
-        if (has_regions(options_.scene))
+        if (pipeline::holds_regions(options_.scene))
             return check_regions(options_.scene, options_.read.limits.bytes, options_.json, executor());
         if (assets::extension(options_.scene) != "crofton" && (is_scene() || !std::filesystem::exists(options_.scene)))
             return report_error(
@@ -149,11 +157,14 @@ class BakeRun {
     int write() {
         const auto tree = pipeline::orientation_from(options_.tree);
         if (!tree) return report_error("", tree.error());
-        RegionGrid grid;
+        RegionBake regions{{}, options_.folder, {}, options_.state, options_.json};
         if (!options_.regions.empty()) {
-            const auto given = region_grid_from(options_.regions);
-            if (!given) return report_error("", given.error());
-            grid = *given;
+            const auto grid = region_grid_from(options_.regions);
+            if (!grid) return report_error("", grid.error());
+            const auto shard = shard_from(options_.shard);
+            if (!shard) return report_error("", shard.error());
+            regions.grid = *grid;
+            regions.shard = *shard;
         }
         const auto source = load_updated_scene(
             options_.scene, options_.read,
@@ -168,8 +179,7 @@ class BakeRun {
         }
         const bake::BakeOptions how{
             .tree = *tree, .occluders = occluders ? &*occluders : nullptr, .clusters = !options_.no_clusters};
-        if (!options_.folder.empty())
-            return write_regions(*source, grid, options_.folder, how, options_.json, executor());
+        if (!options_.folder.empty()) return write_regions(*source, regions, how, executor());
         const Stopwatch watch;
         const auto file = assets::bake_source(*source, executor(), how);
         const Times times{watch.milliseconds(), watch.cpu_milliseconds(), finding_ms};
@@ -204,6 +214,12 @@ void add_bake_command(CommandLine& line) {
                 "Columns and rows of regions along x and z, such as 8x8: each becomes a file in --folder")
         .excludes(output);
     command.option("--folder", options->folder, "Folder to write regions and their index to").excludes(output);
+    command.option("--shard", options->shard, "i/n: bake only every n-th region, from i on; needs --state");
+    command
+        .option("--state", options->state,
+                "Save what is done to this file; continue from it if it exists. By default a file in --folder, which "
+                "goes when all is done")
+        .writable_file();
     command.option("--map", options->map, "Level of a .wad file");
     command.option("--instances", options->instances, "Approximate number of instances of the town");
     command.option("--seed", options->seed, "Seed of the town").show_default();
@@ -220,14 +236,17 @@ void add_bake_command(CommandLine& line) {
     command.footer(
         "A .crofton file contains the whole scene, as it stands when it has been read: the town's traffic does not\n"
         "move. Every sub-command that reads scenes reads it too. A folder of regions has a .crofton file for each and\n"
-        "index.crofton, which is written last; a World attaches those that are near (docs/large_worlds.md).\n"
+        "index.crofton, which is written last; a World attaches those that are near (docs/large_worlds.md). Regions\n"
+        "that an interrupted run has finished are not baked again; 'crofton merge' writes the index of shards.\n"
         "Exit status: 0 done, 2 bad usage, a scene that cannot be read or a damaged .crofton file, 130 interrupted\n"
-        "(nothing is written then).\n"
+        "(nothing is written then, but finished regions).\n"
         "\n"
         "Examples:\n"
         "  crofton bake level.wad --map MAP01 -o map01.crofton\n"
         "  crofton bake map01.crofton\n"
         "  crofton bake town --instances 100000 --regions 8x8 --folder regions --threads 0 && crofton bake regions\n"
+        "  crofton bake town --regions 8x8 --folder regions --shard 0/2 --state part0     the other: 1/2, part1\n"
+        "  crofton merge part0 part1 --out regions/index.crofton\n"
         "  crofton frames map01.crofton --camera street --occlude\n"
         "  crofton frames level.wad --map MAP01 --occlude --baked map01.crofton\n"
         "  crofton bake town --instances 1000000 -o town.crofton && crofton bake town.crofton --threads 0");

@@ -2,7 +2,9 @@
 #include "bake_regions.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <charconv>
+#include <crofton/bake/checksum.hpp>
 #include <crofton/bake/region_files.hpp>
 #include <crofton/world/world.hpp>
 #include <cstdio>
@@ -13,6 +15,9 @@
 
 #include "assets/baked_source.hpp"
 #include "commands.hpp"
+#include "interrupt.hpp"
+#include "progress_bar.hpp"
+#include "region_state.hpp"
 #include "report.hpp"
 #include "stopwatch.hpp"
 
@@ -65,48 +70,169 @@ Result<RegionGrid> region_grid_from(const std::string& text) {
                 {"--regions: '", text, "' is no number of columns and rows, such as 8x8"});
 }
 
-int write_regions(const assets::SceneSource& source, const RegionGrid& grid, const std::string& folder,
-                  const bake::BakeOptions& options, const std::string& json, Executor& executor) {
-    const Stopwatch watch;
-    std::error_code failed;
-    std::filesystem::create_directories(folder, failed);
-    if (failed) return report_error(folder, {ErrorCode::io, kNoItem, failed.message()});
-    const auto regions = bake::SceneRegions::split(source.scene, grid.columns, grid.rows);
-    if (!regions) return report_error("--regions", regions.error());
-    const std::vector<bake::MeshLook> looks = assets::looks_of(source);
-    bake::BakeOptions with_looks = options;
-    with_looks.looks = looks;
-    std::vector<bake::RegionFile> index(regions->size());
-    const auto written = for_each_region(index.size(), executor, [&](std::size_t i) -> Result<void> {
-        const auto file = regions->bake(i, with_looks);
+namespace {
+
+constexpr double kSaveEvery = 1000.0;                    // milliseconds
+constexpr const char* kUnfinished = "unfinished.state";  // in the folder, until its index is written
+
+// Files of regions, and the state that says which are written.
+class RegionWriter {
+  public:
+    RegionWriter(const bake::SceneRegions& regions, const RegionBake& bake, std::uint64_t key, Executor& executor)
+        : regions_(regions), bake_(bake), executor_(executor) {
+        path_ = bake.state.empty() ? bake.folder + "/" + kUnfinished : bake.state;
+        state_.key = key;
+        state_.regions = static_cast<std::uint32_t>(regions.size());
+    }
+
+    // Takes over what an earlier run has written, as far as it is still there. Another bake's state is an error if the
+    // user has named it.
+    Result<void> load() {
+        if (!std::filesystem::exists(path_)) return {};
+        const auto file = bake::MappedFile::open(path_, {.access = bake::FileAccess::read});
         if (!file) return tl::unexpected(file.error());
-        index[i] = regions->region(i);
-        index[i].bytes = file->size();
-        return bake::write_file(folder + "/" + index[i].name, *file);
-    });
-    if (!written) return report_error("", written.error());
-    const auto file = bake::bake_region_index(index);
-    if (!file) return report_error(folder, file.error());
-    if (auto done = bake::write_file(folder + "/" + bake::kRegionIndexName, *file); !done)
-        return report_error("", done.error());
-    const Figures figures = figures_of(index);
-    if (json != "-")
-        std::printf("%s: baked %zu regions of %llu instances in %.1f ms (%.1f ms of CPU), %.1f MB in all\n",
-                    folder.c_str(), figures.regions, static_cast<unsigned long long>(figures.objects),
+        auto earlier = region_state_from(file->bytes());
+        if (earlier && (earlier->key != state_.key || earlier->regions != state_.regions))
+            earlier = fail(ErrorCode::invalid_argument, kNoItem,
+                           "is of another scene, or of other options; remove it to begin anew");
+        if (!earlier && bake_.state.empty()) {
+            std::fprintf(stderr, "crofton: %s: %s: beginning anew\n", path_.c_str(), earlier.error().message.c_str());
+            return {};
+        }
+        if (!earlier) return fail(earlier.error().code, kNoItem, path_ + ": " + earlier.error().message);
+        for (const auto& [place, done] : earlier->done) {
+            const auto whole = check_region_file(bake_.folder, done, executor_);
+            if (whole)
+                state_.done.emplace(place, done);
+            else
+                std::fprintf(stderr, "crofton: %s: baked again\n", whole.error().message.c_str());
+        }
+        return {};
+    }
+
+    // The places of this shard that are not done.
+    [[nodiscard]] std::vector<std::uint32_t> left() const {
+        std::vector<std::uint32_t> places;
+        for (std::uint32_t place = bake_.shard.index; place < state_.regions; place += bake_.shard.count)
+            if (!state_.done.contains(place)) places.push_back(place);
+        return places;
+    }
+
+    // Any thread.
+    Result<void> write(std::uint32_t place, const bake::BakeOptions& options) {
+        const auto file = regions_.bake(place, options);
+        if (!file) return tl::unexpected(file.error());
+        RegionState::Done done{regions_.region(place), bake::checksum(*file)};
+        done.file.bytes = file->size();
+        if (auto written = bake::write_file(bake_.folder + "/" + done.file.name, *file); !written) return written;
+        const std::lock_guard lock(mutex_);
+        state_.done.emplace(place, std::move(done));
+        return saved_.milliseconds() < kSaveEvery ? Result<void>{} : save();
+    }
+
+    Result<void> save() {
+        saved_ = Stopwatch();
+        const auto file = to_file(state_);
+        return file ? bake::write_file(path_, *file) : tl::unexpected(file.error());
+    }
+
+    // Requires that all regions are done.
+    Result<void> write_index() {
+        const auto file = bake::bake_region_index(files());
+        if (!file) return tl::unexpected(file.error());
+        if (auto written = bake::write_file(bake_.folder + "/" + bake::kRegionIndexName, *file); !written)
+            return written;
+        if (bake_.state.empty()) std::filesystem::remove(path_);
+        return {};
+    }
+
+    [[nodiscard]] std::vector<bake::RegionFile> files() const {
+        std::vector<bake::RegionFile> files;
+        for (const auto& [place, done] : state_.done) files.push_back(done.file);
+        return files;
+    }
+    [[nodiscard]] bool is_whole() const { return state_.done.size() == state_.regions; }
+
+  private:
+    const bake::SceneRegions& regions_;
+    const RegionBake& bake_;
+    Executor& executor_;
+    std::string path_;
+    RegionState state_;
+    std::mutex mutex_;
+    Stopwatch saved_;
+};
+
+int show_written(const RegionBake& bake, const RegionWriter& writer, std::size_t baked, std::size_t of,
+                 const Stopwatch& watch) {
+    const Figures figures = figures_of(writer.files());
+    if (bake.json != "-") {
+        std::printf("%s: baked %zu regions of %llu instances in %.1f ms (%.1f ms of CPU), %.1f MB in all",
+                    bake.folder.c_str(), figures.regions, static_cast<unsigned long long>(figures.objects),
                     watch.milliseconds(), watch.cpu_milliseconds(), static_cast<double>(figures.bytes) / 1e6);
-    if (json.empty()) return kSuccess;
-    const auto told = write_json(json, {{"folder", folder},
-                                        {"regions", figures.regions},
-                                        {"instances", figures.objects},
-                                        {"bytes", figures.bytes},
-                                        {"milliseconds", watch.milliseconds()},
-                                        {"cpu_milliseconds", watch.cpu_milliseconds()}});
+        if (baked < figures.regions) std::printf("; %zu of them were done before", figures.regions - baked);
+        if (!writer.is_whole()) std::printf("; a part of %zu regions", of);
+        std::printf("\n");
+    }
+    if (bake.json.empty()) return kSuccess;
+    const auto told = write_json(bake.json, {{"folder", bake.folder},
+                                             {"regions", figures.regions},
+                                             {"regions_baked", baked},
+                                             {"instances", figures.objects},
+                                             {"bytes", figures.bytes},
+                                             {"milliseconds", watch.milliseconds()},
+                                             {"cpu_milliseconds", watch.cpu_milliseconds()}});
     return told ? kSuccess : report_error("", told.error());
 }
 
-bool has_regions(const std::string& folder) {
-    std::error_code ignored;
-    return std::filesystem::exists(std::filesystem::path(folder) / bake::kRegionIndexName, ignored);
+Result<int> write_all(const assets::SceneSource& source, const RegionBake& bake, const bake::BakeOptions& options,
+                      Executor& executor) {
+    const Stopwatch watch;
+    catch_interrupts();
+    std::error_code failed;
+    std::filesystem::create_directories(bake.folder, failed);
+    if (failed) return fail(ErrorCode::io, kNoItem, bake.folder + ": " + failed.message());
+    const auto regions = bake::SceneRegions::split(source.scene, bake.grid.columns, bake.grid.rows);
+    if (!regions) return fail(regions.error().code, kNoItem, "--regions: " + regions.error().message);
+    RegionWriter writer(*regions, bake, region_key(source, bake.grid.columns, bake.grid.rows, options, executor),
+                        executor);
+    if (auto loaded = writer.load(); !loaded) return tl::unexpected(loaded.error());
+    const bool is_shard = bake.shard.count > 1;
+    // Regions of two bakes never have an index.
+    if (!is_shard) std::filesystem::remove(bake.folder + "/" + bake::kRegionIndexName, failed);
+    const std::vector<std::uint32_t> places = writer.left();
+    std::atomic<std::size_t> baked = 0;
+    const std::vector<bake::MeshLook> looks = assets::looks_of(source);
+    bake::BakeOptions with_looks = options;
+    with_looks.looks = looks;
+    ProgressBar bar("bake: regions", places.size());
+    const auto written = for_each_region(places.size(), executor, [&](std::size_t i) -> Result<void> {
+        if (interrupted()) return {};
+        auto done = writer.write(places[i], with_looks);
+        if (done) bar.set(++baked);
+        return done;
+    });
+    finish_what_there_is();
+    // Also after an error: what is done need not be done again.
+    auto saved = writer.save();
+    if (!written) return tl::unexpected(written.error());
+    if (!saved) return tl::unexpected(saved.error());
+    if (baked < places.size()) {
+        std::fprintf(stderr, "crofton: interrupted after %zu of %zu regions: the next run continues from here\n",
+                     baked.load(), places.size());
+        return kInterrupted;
+    }
+    if (!is_shard)
+        if (auto indexed = writer.write_index(); !indexed) return tl::unexpected(indexed.error());
+    return show_written(bake, writer, baked, regions->size(), watch);
+}
+
+}  // namespace
+
+int write_regions(const assets::SceneSource& source, const RegionBake& bake, const bake::BakeOptions& options,
+                  Executor& executor) {
+    const auto status = write_all(source, bake, options, executor);
+    return status ? *status : report_error("", status.error());
 }
 
 int check_regions(const std::string& folder, std::uint64_t largest_file, const std::string& json, Executor& executor) {

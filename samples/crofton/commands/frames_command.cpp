@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 #include <memory>
 #include <optional>
+#include <thread>
 
 #include "assets/flat_scene.hpp"
 #include "assets/scene_source.hpp"
@@ -21,11 +22,13 @@
 #include "pipeline/camera_path.hpp"
 #include "pipeline/draw_list.hpp"
 #include "pipeline/pipeline.hpp"
+#include "pipeline/region_pipeline.hpp"
 #include "pipeline/street.hpp"
 #include "pipeline/verify.hpp"
 #include "progress_bar.hpp"
 #include "read_options.hpp"
 #include "report.hpp"
+#include "stopwatch.hpp"
 #include "trace_file.hpp"
 
 namespace crofton::cli {
@@ -35,7 +38,7 @@ using pipeline::FrameStatistics;
 using Clock = std::chrono::steady_clock;
 
 struct FramesOptions {
-    std::string scene = "town", map, camera = "orbit", size = "1280x720", bounds = "obb-perimeter", cull = "tree",
+    std::string scene = "town", map, camera, size = "1280x720", bounds = "obb-perimeter", cull = "tree",
                 tree = "aligned";
     std::optional<std::uint32_t> frames;  // absent: pipeline::kBuiltInFrames, or all of a recorded path
     std::uint32_t instances = 0;
@@ -43,6 +46,8 @@ struct FramesOptions {
     unsigned threads = 1;
     bool draw = false, no_draw = false, no_seen = false, verify = false;
     bool occlude = false;
+    double region_distance = 0.0;  // 0: by the regions' size
+    bool real_time = false;
     std::string occlusion, occlusion_size;  // empty: not said
     std::optional<std::uint32_t> occluders;
     std::string baked;  // a file with the scene's occluders; empty: they are found
@@ -62,6 +67,7 @@ double microseconds_since(Clock::time_point start) {
 class FramesRun {
   public:
     explicit FramesRun(FramesOptions options) : options_(std::move(options)) {
+        if (options_.camera.empty()) options_.camera = pipeline::holds_regions(options_.scene) ? "flight" : "orbit";
         if (!options_.trace.empty()) trace_ = std::make_unique<TraceFile>();
     }
 
@@ -71,14 +77,13 @@ class FramesRun {
         std::optional<pipeline::Verification> verification;
         if (options_.verify) verification.emplace();
         std::vector<FrameStatistics> frames;
-        const SceneFacts facts{source_->name, source_->scene.node_count(), source_->scene.instance_count(),
-                               assets::instanced_triangles(source_->scene)};
+        const SceneFacts facts = scene_facts();
         {
             FramesStream stream(options_.output, facts, path_.cameras.size());
             const auto count = static_cast<std::uint32_t>(path_.cameras.size());
             ProgressBar bar("frames", count);
             for (std::uint32_t index = 0; index < count && !interrupted(); ++index) {
-                auto frame = run_frame(index);
+                auto frame = regions_ ? run_frame_of_regions(index) : run_frame(index);
                 if (!frame)
                     return fail(frame.error().code, frame.error().item,
                                 "frame " + std::to_string(index) + ": " + frame.error().message);
@@ -95,6 +100,8 @@ class FramesRun {
         if (frames.empty()) return fail(ErrorCode::cancelled, kNoItem, "interrupted before the first frame");
         if (auto written = write_results(options_.output, facts, frames, verification); !written)
             return tl::unexpected(written.error());
+        if (regions_ && options_.output.json != "-" && options_.output.csv != "-")
+            std::printf("the first frame was found %.0f ms after the start\n", first_frame_ms_);
         if (auto written = write_report(facts, frames, verification); !written) return tl::unexpected(written.error());
         if (trace_)
             if (auto written = trace_->write(options_.trace); !written) return tl::unexpected(written.error());
@@ -124,6 +131,10 @@ class FramesRun {
         if (!options_.output.png.empty())
             if (auto made = make_picture_folder(options_.output.png); !made) return made;
         if (options_.threads != 1) pool_.emplace(options_.threads);
+        if (pipeline::holds_regions(options_.scene)) return prepare_regions(*size, aspect);
+        if (options_.real_time || options_.region_distance > 0.0)
+            return fail(ErrorCode::invalid_argument, kNoItem,
+                        "--real-time and --region-distance are for a folder of regions, by 'crofton bake --regions'");
 
         // obb-frustum fits the boxes to the frustum in use: 60° with this aspect, and a depth of the order of a street.
         Camera typical;
@@ -160,6 +171,70 @@ class FramesRun {
         if (!frames) return tl::unexpected(frames.error());
         pipeline_.emplace(std::move(*frames));
         return prepare_drawing(*size);
+    }
+
+    // The flight begins when the regions near its first place are loaded.
+    Result<void> prepare_regions(const ImageSize& size, double aspect) {
+        const FramesOptions fixed;
+        if (options_.verify || options_.bounds != fixed.bounds || options_.cull != fixed.cull ||
+            options_.tree != fixed.tree || !options_.baked.empty() || !options_.map.empty() || options_.instances != 0)
+            return fail(ErrorCode::unsupported, kNoItem,
+                        "--verify, --bounds, --cull, --tree, --baked, --map and --instances are not for a folder of "
+                        "regions, which holds its trees, bounds and occluders");
+        if (auto set = set_occlusion(size); !set) return set;
+        pipeline::RegionPipelineOptions how;
+        how.stream = {.distance = options_.region_distance,
+                      .meshes = options_.occlude,
+                      .waits = !options_.real_time,
+                      .places_occluders = pipeline_options_.occlusion.has_value(),
+                      .loaders = pool_ ? pool_->concurrency() : 1,
+                      .largest_file = options_.read.limits.bytes};
+        how.occlusion = pipeline_options_.occlusion;
+        how.picture = pipeline_options_.picture;
+        auto opened = pipeline::RegionPipeline::open(options_.scene, how);
+        if (!opened) return tl::unexpected(opened.error());
+        regions_.emplace(std::move(*opened));
+        focus_ = regions_->stream().bounds();
+        auto path = pipeline::make_camera_path(
+            {options_.camera, options_.frames.value_or(0), options_.seed, aspect, options_.read.limits}, focus_, {});
+        if (!path) return tl::unexpected(path.error());
+        path_ = std::move(*path);
+        make_list();
+        return start_drawing(size, 0.0);
+    }
+
+    [[nodiscard]] SceneFacts scene_facts() const {
+        if (regions_) {
+            const std::uint64_t count = regions_->stream().object_count();
+            return {std::filesystem::path(options_.scene).lexically_normal().string(), count, count, 0};
+        }
+        return {source_->name, source_->scene.node_count(), source_->scene.instance_count(),
+                assets::instanced_triangles(source_->scene)};
+    }
+
+    // Regions may have brought new meshes.
+    void make_list() {
+        if (list_ && listed_ == regions_->mesh_revision()) return;
+        listed_ = regions_->mesh_revision();
+        list_.emplace(regions_->drawables(),
+                      pipeline::DrawList::Looks{regions_->unlit(), regions_->one_sided(), regions_->flat()},
+                      regions_->clusters());
+    }
+
+    Result<FrameStatistics> run_frame_of_regions(std::uint32_t index) {
+        const FileZone zone(trace_.get(), "frame");
+        const auto start = Clock::now();
+        auto frame = regions_->run(path_.cameras[index], executor());
+        if (!frame) return frame;
+        frame->index = index;
+        if (index == 0) first_frame_ms_ = since_start_.milliseconds();
+        const bool is_new = listed_ != regions_->mesh_revision();
+        make_list();
+        if (drawing_ && is_new)
+            if (auto set = drawing_->upload_geometry(); !set) return tl::unexpected(set.error());
+        if (auto drawn = draw_or_predict(*frame); !drawn) return tl::unexpected(drawn.error());
+        if (options_.real_time) std::this_thread::sleep_until(start + std::chrono::microseconds(16'667));
+        return frame;
     }
 
     // Options of occluders imply them.
@@ -205,9 +280,12 @@ class FramesRun {
     Result<void> prepare_drawing(const ImageSize& size) {
         list_.emplace(source_->scene, pipeline::DrawList::Looks{source_->unlit, source_->one_sided, source_->flat},
                       pipeline_->clusters());
-        if (options_.no_draw) return {};
         // Half of the light is haze at three times the size of the place; none where the light is baked in.
-        const double haze = source_->unlit.empty() ? 3.0 * glm::length(focus_.half_extents()) : 0.0;
+        return start_drawing(size, source_->unlit.empty() ? 3.0 * glm::length(focus_.half_extents()) : 0.0);
+    }
+
+    Result<void> start_drawing(const ImageSize& size, double haze) {
+        if (options_.no_draw) return {};
         auto drawing = FramesDrawing::create(*list_, size, haze, options_.occlude);
         if (drawing) {
             drawing_ = std::move(*drawing);
@@ -232,15 +310,18 @@ class FramesRun {
         if (!frame) return frame;
         frame->index = index;
         frame->update_us += scene_us;
-        const FileZone part(trace_.get(), "draw and count triangles");
-        if (drawing_) {
-            if (auto drawn = drawing_->draw(*frame); !drawn) return tl::unexpected(drawn.error());
-            if (!options_.no_seen || options_.verify)
-                if (auto seen = drawing_->find_seen(*frame); !seen) return tl::unexpected(seen.error());
-        } else {
-            predict(*frame);
-        }
+        if (auto drawn = draw_or_predict(*frame); !drawn) return tl::unexpected(drawn.error());
         return frame;
+    }
+
+    Result<void> draw_or_predict(FrameStatistics& frame) {
+        const FileZone part(trace_.get(), "draw and count triangles");
+        if (!drawing_) {
+            predict(frame);
+            return {};
+        }
+        if (auto drawn = drawing_->draw(frame); !drawn) return drawn;
+        return !options_.no_seen || options_.verify ? drawing_->find_seen(frame) : Result<void>{};
     }
 
     void predict(FrameStatistics& frame) {
@@ -318,7 +399,11 @@ class FramesRun {
     Aabb focus_;
     pipeline::CameraPath path_;
     std::optional<pipeline::Pipeline> pipeline_;
+    std::optional<pipeline::RegionPipeline> regions_;  // in place of source_ and pipeline_
     std::optional<pipeline::DrawList> list_;
+    std::uint64_t listed_ = 0;  // the revision of the regions' meshes that it has
+    Stopwatch since_start_;
+    double first_frame_ms_ = 0.0;
     std::unique_ptr<FramesDrawing> drawing_;
     std::vector<ReportPicture> report_pictures_;
 };
@@ -357,6 +442,7 @@ constexpr const char* kFramesExamples =
     "  crofton frames parts/ --camera street              a city composed from a folder of parts\n"
     "  crofton frames level.wad --map MAP01 --png out     a DOOM level, a picture per frame in out/\n"
     "  crofton frames city.glb --bounds aabb --csv -      another bound, one line per frame to stdout\n"
+    "  crofton frames regions/ --no-draw                  a flight over regions by 'crofton bake --regions'\n"
     "  crofton frames town --report town.html             one page with pictures and charts\n"
     "  crofton frames town --json run.json && crofton frames town --camera run.json   the same path again\n";
 
@@ -370,10 +456,12 @@ void add_frames_command(CommandLine& line) {
     command
         .option(
             "scene", options->scene,
-            "town, room, office, valley, hall, a folder of city parts, or a .glb, .gltf, .obj, .wad or .crofton file")
+            "town, room, office, valley, hall, a folder of city parts or of regions, or a .glb, .gltf, .obj, .wad or "
+            ".crofton file")
         .show_default();
     command.option("--frames", options->frames, "Number of frames; by default 120, or all of a recorded path");
-    command.option("--camera", options->camera, "orbit, street, random, or a JSON file of cameras").show_default();
+    command.option("--camera", options->camera,
+                   "orbit, street, flight, random, or a JSON file of cameras; orbit by default, flight over regions");
     command.option("--seed", options->seed, "Seed of built-in scenes and of random cameras").show_default();
     command.option("--instances", options->instances, "Number of instances of the town, up to 1000000; 0: about 3000")
         .show_default();
@@ -381,6 +469,13 @@ void add_frames_command(CommandLine& line) {
     command.option("--bounds", options->bounds, "sphere, aabb, obb-volume, obb-area, obb-perimeter or obb-frustum")
         .show_default();
     command.option("--cull", options->cull, "none, flat or tree").show_default();
+    command
+        .option("--region-distance", options->region_distance,
+                "Attach regions of a folder within this distance of the camera, and see no farther. By default the "
+                "size of an average region")
+        .positive();
+    command.flag("--real-time", options->real_time,
+                 "Show 60 frames a second and wait for no region: a frame attaches at most one, when it is loaded");
     const Option occlude =
         command.flag("--occlude", options->occlude, "Also draw each frame without hidden objects, and compare both");
     command

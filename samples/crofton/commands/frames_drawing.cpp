@@ -22,14 +22,18 @@ Result<std::unique_ptr<FramesDrawing>> FramesDrawing::create(pipeline::DrawList&
     std::unique_ptr<FramesDrawing> drawing(new FramesDrawing(list, std::move(*device), haze));
     auto rasterizer = render::Rasterizer::create(drawing->device_, {.width = size.width, .height = size.height});
     if (!rasterizer) return tl::unexpected(rasterizer.error());
-    if (auto set = rasterizer->set_geometry(list.vertices(), list.indices()); !set) return tl::unexpected(set.error());
     for (const std::uint32_t picture : {kOwners, kAll}) {
         if (picture == kAll && !occlusion) continue;
         if (auto made = rasterizer->resize(size.width, size.height, picture); !made)
             return tl::unexpected(made.error());
     }
     drawing->rasterizer_.emplace(std::move(*rasterizer));
+    if (auto set = drawing->upload_geometry(); !set) return tl::unexpected(set.error());
     return drawing;
+}
+
+Result<void> FramesDrawing::upload_geometry() {
+    return rasterizer_->set_geometry(list_.vertices(), list_.indices());
 }
 
 template <class Columns>

@@ -21,6 +21,9 @@ class FramesDrawing {
     [[nodiscard]] static Result<std::unique_ptr<FramesDrawing>> create(pipeline::DrawList& list, const ImageSize& size,
                                                                        double haze, bool occlusion);
 
+    // To be called when the list has other meshes.
+    [[nodiscard]] Result<void> upload_geometry();
+
     // Fills gpu, triangles_clipped and draw_us of the frame, and of its occlusion where it has one.
     [[nodiscard]] Result<void> draw(pipeline::FrameStatistics& frame);
     // The picture of the last frame, without what is hidden.

@@ -139,6 +139,13 @@ std::string table_means(const SceneFacts& scene, std::span<const FrameStatistics
     text += format("microseconds: update %.0f, cull %.0f, collide %.0f, draw %.0f\n",
                    mean([](const auto& f) { return f.update_us; }), mean([](const auto& f) { return f.cull_us; }),
                    mean([](const auto& f) { return f.collide_us; }), mean([](const auto& f) { return f.draw_us; }));
+    if (const auto found = pipeline::hitches(frames))
+        text += format(
+            "regions: %llu came, %llu went, at most %llu attached; update and cull: median %.2f ms, worst %.2f ms "
+            "(frame "
+            "%u); waited %.0f ms for regions, of which the slowest took %.0f ms to load\n",
+            Whole{found->came}, Whole{found->went}, Whole{found->most_attached}, found->median_ms, found->worst_ms,
+            found->worst_frame, found->wait_ms, found->longest_load_ms);
     if (!frames.front().gpu) text += "nothing was drawn: counts are the CPU's alone\n";
     if (!verification) return text;
     text +=

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "commands.hpp"
+#include "region_state.hpp"
 #include "report.hpp"
 
 namespace crofton::cli {
@@ -17,6 +18,14 @@ struct MergeRequest {
     std::uint32_t shards = 0;
 };
 
+// Says on stderr which shards to run again.
+void print_missing(const MergeRequest& options, const char* what, std::span<const std::uint32_t> missing,
+                   std::uint32_t shards) {
+    std::fprintf(stderr, "crofton: %s: %s are missing; run again:", options.out.c_str(), what);
+    for (const std::uint32_t i : missing) std::fprintf(stderr, " --shard %u/%u", i, shards);
+    std::fputs("\n", stderr);
+}
+
 Result<int> run_merge(const MergeRequest& options) {
     std::vector<bake::MappedFile> files;
     std::vector<std::span<const std::byte>> states;
@@ -25,6 +34,14 @@ Result<int> run_merge(const MergeRequest& options) {
         if (!file) return tl::unexpected(file.error());
         files.push_back(std::move(*file));
         states.push_back(files.back().bytes());
+    }
+    const std::uint32_t shards = options.shards ? options.shards : static_cast<std::uint32_t>(options.parts.size());
+    if (is_region_state(states.front())) {
+        const auto missing = merge_region_states(options.parts, states, options.out, shards, serial_executor());
+        if (!missing) return tl::unexpected(missing.error());
+        if (missing->empty()) return kSuccess;
+        print_missing(options, "regions", *missing, shards);
+        return kCheckFailed;
     }
     const bool of_light = radiosity::is_bake_state(states.front());
     for (std::size_t i = 1; i < states.size(); ++i)
@@ -39,13 +56,10 @@ Result<int> run_merge(const MergeRequest& options) {
     }
     if (auto written = write_file(options.out, {reinterpret_cast<const char*>(sum->data()), sum->size()}); !written)
         return tl::unexpected(written.error());
-    const std::uint32_t shards = options.shards ? options.shards : static_cast<std::uint32_t>(options.parts.size());
     const auto missing = of_light ? radiosity::missing_shards(*sum, shards) : pvs::missing_shards(*sum, shards);
     if (!missing) return tl::unexpected(missing.error());
     if (missing->empty()) return kSuccess;
-    std::fprintf(stderr, "crofton: %s: %s are missing; run again:", options.out.c_str(), of_light ? "runs" : "lines");
-    for (const std::uint32_t i : *missing) std::fprintf(stderr, " --shard %u/%u", i, shards);
-    std::fputs("\n", stderr);
+    print_missing(options, of_light ? "runs" : "lines", *missing, shards);
     return kCheckFailed;
 }
 
@@ -55,19 +69,27 @@ void add_merge_command(CommandLine& line) {
     auto options = std::make_shared<MergeRequest>();
     Command command = line.command("merge", "Merge the parts of a bake that ran as shards");
     command
-        .option("parts", options->parts,
-                "Files that `crofton pvs` or `crofton study radiosity` wrote with --shard i/n --state FILE")
+        .option(
+            "parts", options->parts,
+            "Files that `crofton pvs`, `crofton study radiosity` or `crofton bake --regions` wrote with --shard i/n "
+            "--state FILE")
         .required();
-    command.option("--out", options->out, "File for the sum; it has the bytes that one run would have saved")
+    command
+        .option("--out", options->out,
+                "File for the sum; it has the bytes that one run would have saved. Of regions: index.crofton in "
+                "their folder")
         .writable_file()
         .required();
     command.option("--shards", options->shards, "Number of parts of the work; by default the number given");
     command.footer(
-        "A part that is given twice counts once. Exit status: 0 nothing is missing, 1 parts are missing (the sum is "
-        "written, and the shards to run again are named), 2 a part is damaged or of another bake.\n"
+        "A part that is given twice counts once. Exit status: 0 nothing is missing, 1 parts are missing (the shards to "
+        "run again are named; the sum is written, but no index of regions), 2 a part, or a region's file, is damaged "
+        "or "
+        "of another bake.\n"
         "\n"
         "Example:\n"
-        "  crofton merge part0 part1 part2 part3 --out whole.state");
+        "  crofton merge part0 part1 part2 part3 --out whole.state\n"
+        "  crofton merge part0 part1 --out regions/index.crofton");
     command.action([options] {
         const auto done = run_merge(*options);
         return done ? *done : report_error("", done.error());

@@ -61,6 +61,7 @@ constexpr const char* kViewExamples =
     "  crofton view scene.glb --camera street --bounds aabb\n"
     "  crofton view, then C until 'clusters', F, fly up    why each triangle is drawn or not\n"
     "  crofton pvs town --out sets.crofton && crofton view town --baked sets.crofton\n"
+    "  crofton view regions/ --camera flight               regions by 'crofton bake --regions' come and go\n"
     "  crofton view --no-window --after 10 --screenshot town.png --json -\n"
     "  xvfb-run -a crofton view --script tour.json         no display: a virtual one\n";
 
@@ -75,7 +76,8 @@ void add_view_command(CommandLine& line) {
     command
         .option(
             "SCENE", options.scene.source,
-            "town, room, office, valley, hall, a folder of city parts, or a .glb, .gltf, .obj, .wad or .crofton file")
+            "town, room, office, valley, hall, a folder of city parts or of regions, or a .glb, .gltf, .obj, .wad or "
+            ".crofton file")
         .show_default();
     command.option("--map", options.scene.map, "Level of a .wad file");
     command.option("--seed", options.scene.seed, "of the town").show_default();
@@ -94,7 +96,7 @@ void add_view_command(CommandLine& line) {
     command.flag("--occlude", options.settings.method.occlude, "Leave out objects that are hidden behind others");
     command.option("--baked", options.scene.baked,
                    "A baked file of the scene: occluders by 'crofton bake', visible sets by 'crofton pvs'");
-    command.option("--camera", options.camera, "Play a path: orbit, street, random, or a JSON file");
+    command.option("--camera", options.camera, "Play a path: orbit, street, flight, random, or a JSON file");
     command.option("--after", options.frames, "Quit after this many frames");
     command.option("--screenshot", options.screenshot, "Write the last frame as PNG").writable_file();
     command.option("--script", options.script, "JSON file of keys, cameras, switches and screenshots by frame");

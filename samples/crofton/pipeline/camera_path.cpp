@@ -82,6 +82,18 @@ Camera street(Camera camera, const PathOptions& options, std::span<const glm::dv
     return camera;
 }
 
+// Straight across, from corner to corner, over all that stands there, looking ahead and down.
+Camera flight(Camera camera, const Aabb& bounds, const Frame& frame, double t) {
+    const glm::dvec3 half = bounds.half_extents();
+    const glm::dvec3 way(half.x, 0.0, half.z);
+    camera.position = frame.center + (1.4 * t - 0.7) * way;
+    camera.position.y = bounds.max.y + 0.1 * frame.height;
+    const double length = glm::length(way);
+    const glm::dvec3 ahead = length > 0.0 ? way / length : glm::dvec3(1.0, 0.0, 0.0);
+    camera.forward = glm::normalize(ahead - glm::dvec3(0.0, 0.35, 0.0));
+    return camera;
+}
+
 // Anywhere in the bounds, looking anywhere.
 Camera random_camera(Camera camera, const Aabb& bounds, std::mt19937_64& random) {
     const auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
@@ -155,11 +167,12 @@ Aabb focus_of(const scene::Scene& scene) {
 }
 
 Result<CameraPath> make_camera_path(const PathOptions& options, const Aabb& bounds, std::span<const glm::dvec3> walk) {
-    const bool built_in = options.kind == "orbit" || options.kind == "street" || options.kind == "random";
+    const bool built_in =
+        options.kind == "orbit" || options.kind == "street" || options.kind == "flight" || options.kind == "random";
     if (!built_in) {
         if (!std::filesystem::exists(options.kind))
             return fail(ErrorCode::invalid_argument, kNoItem,
-                        "camera: '" + options.kind + "' is neither orbit, street, random nor a file");
+                        "camera: '" + options.kind + "' is neither orbit, street, flight, random nor a file");
         auto recorded = load_camera_path(options.kind, options.limits);
         if (!recorded || options.frames == 0) return recorded;
         const std::size_t length = recorded->cameras.size();
@@ -198,6 +211,8 @@ Result<CameraPath> make_camera_path(const PathOptions& options, const Aabb& boun
             result.cameras.push_back(orbit(base, frame, t));
         else if (options.kind == "street")
             result.cameras.push_back(street(close_up, options, path, t));
+        else if (options.kind == "flight")
+            result.cameras.push_back(flight(base, bounds, frame, t));
         else
             result.cameras.push_back(random_camera(base, bounds, random));
     }

@@ -22,7 +22,7 @@ namespace crofton::pipeline {
 [[nodiscard]] Aabb focus_of(const scene::Scene& scene);
 
 struct PathOptions {
-    std::string kind = "orbit";  // orbit, street, random, or the path of a JSON file
+    std::string kind = "orbit";  // orbit, street, flight, random, or the path of a JSON file
     std::uint32_t frames = 0;    // 0: as many as the file has; kBuiltInFrames of the others
     std::uint64_t seed = 1;
     double aspect = 16.0 / 9.0;

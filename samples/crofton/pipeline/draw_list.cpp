@@ -26,9 +26,10 @@ Aabb bounds_of(const depth::Cluster& cluster) {
 
 }  // namespace
 
-DrawList::DrawList(const scene::Scene& scene, const Looks& looks, std::shared_ptr<const SceneClusters> clusters)
-    : scene_(scene), clusters_(std::move(clusters)) {
-    for (scene::MeshId mesh = 0; mesh < scene.mesh_count(); ++mesh) {
+DrawList::DrawList(std::shared_ptr<const Drawables> drawables, const Looks& looks,
+                   std::shared_ptr<const SceneClusters> clusters)
+    : drawables_(std::move(drawables)), clusters_(std::move(clusters)) {
+    for (scene::MeshId mesh = 0; mesh < drawables_->mesh_count(); ++mesh) {
         unlit_.push_back(flag(looks.unlit, mesh));
         one_sided_.push_back(flag(looks.one_sided, mesh));
         append(mesh, flag(looks.flat, mesh) != 0);
@@ -40,12 +41,10 @@ void DrawList::append(scene::MeshId mesh, bool flat) {
     constexpr float kFlat = 0.0f;
     Vector<render::Vertex> vertices;
     Vector<std::uint32_t> indices;
-    if (!scene_.is_mesh_removed(mesh)) {
-        if (flat)
-            render::append_mesh(scene_.mesh(mesh), kPlainColor, vertices, indices, kFlat);
-        else
-            render::append_mesh(scene_.mesh(mesh), kPlainColor, vertices, indices);
-    }
+    if (flat)
+        render::append_mesh(drawables_->mesh(mesh), kPlainColor, vertices, indices, kFlat);
+    else
+        render::append_mesh(drawables_->mesh(mesh), kPlainColor, vertices, indices);
     if (clusters_ && !indices.empty()) {
         const Vector<std::uint32_t> in_order = indices;
         clusters_->meshes[mesh].permute(in_order, indices);
@@ -63,10 +62,10 @@ void DrawList::append(scene::MeshId mesh, bool flat) {
 void DrawList::select(std::span<const scene::InstanceId> visible, const Camera& camera) {
     unsorted_.clear();
     for (const scene::InstanceId instance : visible)
-        unsorted_.push_back({instance, is_one_sided(scene_, one_sided_, instance)});
+        unsorted_.push_back({instance, is_one_sided(*drawables_, one_sided_, instance)});
     place(camera);
     for (std::size_t i = 0; i < selected_.size(); ++i) {
-        const Part& part = parts_[scene_.mesh_of(selected_[i].instance)];
+        const Part& part = parts_[drawables_->mesh_of(selected_[i].instance)];
         add_range(i, part.first_index, part.index_count, part.bounds);
     }
 }
@@ -76,12 +75,12 @@ void DrawList::select(std::span<const depth::VisibleCluster> visible, const Came
     for (std::size_t begin = 0, end = 0; begin < visible.size(); begin = end) {
         while (end < visible.size() && visible[end].object == visible[begin].object) ++end;
         unsorted_.push_back(
-            {visible[begin].object, is_one_sided(scene_, one_sided_, visible[begin].object), begin, end});
+            {visible[begin].object, is_one_sided(*drawables_, one_sided_, visible[begin].object), begin, end});
     }
     place(camera);
     piece_of_range_.clear();
     for (std::size_t i = 0; i < selected_.size(); ++i) {
-        const scene::MeshId mesh = scene_.mesh_of(selected_[i].instance);
+        const scene::MeshId mesh = drawables_->mesh_of(selected_[i].instance);
         for (std::size_t k = selected_[i].begin; k < selected_[i].end; ++k) {
             const depth::Cluster& cluster = clusters_->meshes[mesh].clusters()[visible[k].cluster];
             const Aabb bounds = bounds_of(cluster);
@@ -112,8 +111,8 @@ void DrawList::place(const Camera& camera) {
     order_.clear();
     for (std::uint32_t i = 0; i < unsorted_.size(); ++i) {
         const scene::InstanceId instance = unsorted_[i].instance;
-        const Aabb& bounds = parts_[scene_.mesh_of(instance)].bounds;
-        const Transform& world = scene_.world(scene_.node_of(instance));
+        const Aabb& bounds = parts_[drawables_->mesh_of(instance)].bounds;
+        const Transform world = drawables_->world_of(instance);
         const glm::dvec3 center = world.linear * bounds.center() + world.translation;
         const double radius = glm::length(world.linear * bounds.half_extents());
         const auto distance = static_cast<float>(glm::length(center - camera.position) + radius);
@@ -126,9 +125,9 @@ void DrawList::place(const Camera& camera) {
     const render::ModelToClip to_clip(camera);
     for (const auto& [key, i] : order_) {
         selected_.push_back(unsorted_[i]);
-        const Transform& world = scene_.world(scene_.node_of(unsorted_[i].instance));
+        const Transform world = drawables_->world_of(unsorted_[i].instance);
         transforms_.push_back(render::draw_transform(to_clip(world.linear, world.translation), world.linear));
-        transforms_.back().unlit = unlit_[scene_.mesh_of(unsorted_[i].instance)];
+        transforms_.back().unlit = unlit_[drawables_->mesh_of(unsorted_[i].instance)];
     }
 }
 
@@ -146,7 +145,7 @@ std::uint64_t DrawList::predict_clipped() {
             sum += range.index_count / 3;
             continue;
         }
-        const Part& part = parts_[scene_.mesh_of(instance_of(i))];
+        const Part& part = parts_[drawables_->mesh_of(instance_of(i))];
         sum += predictor_.count(
             std::span<const glm::vec3>(positions_).subspan(part.first_vertex, part.vertex_count),
             std::span<const std::uint32_t>(local_indices_).subspan(range.first_index, range.index_count),

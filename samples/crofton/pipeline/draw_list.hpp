@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "drawables.hpp"
 #include "frame_statistics.hpp"
 #include "scene_clusters.hpp"
 
@@ -25,7 +26,11 @@ class DrawList {
         std::span<const std::uint8_t> flat{};       // each face has its own normal
     };
     // With `clusters`, of this scene, triangles lie in their order, so that a cluster is a range.
-    DrawList(const scene::Scene& scene, const Looks& looks, std::shared_ptr<const SceneClusters> clusters = nullptr);
+    DrawList(const scene::Scene& scene, const Looks& looks, std::shared_ptr<const SceneClusters> clusters = nullptr)
+        : DrawList(std::make_shared<SceneDrawables>(scene), looks, std::move(clusters)) {}
+    // The meshes are those of now.
+    DrawList(std::shared_ptr<const Drawables> drawables, const Looks& looks,
+             std::shared_ptr<const SceneClusters> clusters);
 
     [[nodiscard]] std::span<const render::Vertex> vertices() const { return vertices_; }
     [[nodiscard]] std::span<const std::uint32_t> indices() const { return indices_; }
@@ -66,7 +71,7 @@ class DrawList {
     void place(const Camera& camera);
     void add_range(std::size_t selected, std::uint32_t first_index, std::uint32_t index_count, const Aabb& bounds);
 
-    const scene::Scene& scene_;
+    std::shared_ptr<const Drawables> drawables_;
     std::shared_ptr<const SceneClusters> clusters_;
     Vector<render::Vertex> vertices_;
     Vector<glm::vec3> positions_;

@@ -40,6 +40,13 @@ bool has_occlusion(const FrameStatistics& f) {
             says_what_is_seen                                                                             \
     }
 
+#define CROFTON_REGIONS_COLUMN(field)                                                                         \
+    Column {                                                                                                  \
+        "regions_" #field,                                                                                    \
+            [](const FrameStatistics& f) { return f.regions ? static_cast<double>(f.regions->field) : 0.0; }, \
+            [](const FrameStatistics& f) { return f.regions.has_value(); }                                    \
+    }
+
 constexpr std::array kColumns = {
     CROFTON_COLUMN(instances),
     CROFTON_COLUMN(visible),
@@ -69,6 +76,11 @@ constexpr std::array kColumns = {
     CROFTON_COLUMN(cull_us),
     CROFTON_COLUMN(collide_us),
     CROFTON_COLUMN(draw_us),
+    CROFTON_REGIONS_COLUMN(attached),
+    CROFTON_REGIONS_COLUMN(came),
+    CROFTON_REGIONS_COLUMN(went),
+    CROFTON_REGIONS_COLUMN(attach_us),
+    CROFTON_REGIONS_COLUMN(wait_us),
 };
 
 #define CROFTON_OCCLUSION_COLUMN(field)                                                                           \
@@ -108,6 +120,7 @@ constexpr std::array kOcclusionColumns = {
 #undef CROFTON_COLUMN
 #undef CROFTON_GPU_COLUMN
 #undef CROFTON_SEEN_COLUMN
+#undef CROFTON_REGIONS_COLUMN
 
 bool drawn(std::span<const FrameStatistics> frames) {
     return std::any_of(frames.begin(), frames.end(), [](const FrameStatistics& f) { return f.gpu.has_value(); });
@@ -193,6 +206,12 @@ Json to_json(const FrameStatistics& f, bool with_ids) {
                   {"collide_us", f.collide_us},
                   {"draw_us", f.draw_us},
                   {"occlusion", occlusion_json(f.occlusion, f.seen, with_ids)}};
+    if (f.regions)
+        entry["regions"] = {{"attached", f.regions->attached},
+                            {"came", f.regions->came},
+                            {"went", f.regions->went},
+                            {"attach_us", f.regions->attach_us},
+                            {"wait_us", f.regions->wait_us}};
     if (with_ids) {
         entry["visible_ids"] = f.visible_ids;
         entry["colliding_ids"] = f.colliding_ids;
@@ -217,6 +236,15 @@ Json summary_json(std::span<const FrameStatistics> frames, const std::optional<V
         summary["passed_per_seen"] = seen->passed_per_seen();
         if (frames.front().occlusion) summary["occlusion_passed_per_seen"] = seen->passed_per_seen_with_occlusion();
     }
+    if (const auto found = hitches(frames))
+        summary["regions"] = {{"came", found->came},
+                              {"went", found->went},
+                              {"most_attached", found->most_attached},
+                              {"median_ms", found->median_ms},
+                              {"worst_ms", found->worst_ms},
+                              {"worst_frame", found->worst_frame},
+                              {"wait_ms", found->wait_ms},
+                              {"longest_load_ms", found->longest_load_ms}};
     summary["verified"] = verification.has_value();
     summary["mismatches"] = verification ? verification->mismatches() : 0;
     if (verification) {
@@ -251,6 +279,25 @@ std::optional<MeanSeen> mean_seen(std::span<const FrameStatistics> frames) {
     if (count == 0.0) return std::nullopt;
     for (double* sum : {&mean.instances, &mean.triangles, &mean.passed, &mean.passed_with_occlusion}) *sum /= count;
     return mean;
+}
+
+std::optional<Hitches> hitches(std::span<const FrameStatistics> frames) {
+    if (frames.empty() || !frames.front().regions) return std::nullopt;
+    Hitches result;
+    std::vector<double> times;
+    for (const FrameStatistics& frame : frames) {
+        const StreamedFrame& regions = *frame.regions;
+        result.came += regions.came;
+        result.went += regions.went;
+        result.most_attached = std::max(result.most_attached, regions.attached);
+        result.wait_ms += 1e-3 * regions.wait_us;
+        result.longest_load_ms = std::max(result.longest_load_ms, regions.longest_load_ms);
+        times.push_back(1e-3 * (frame.update_us + frame.cull_us));
+        if (times.back() > result.worst_ms) result.worst_ms = times.back(), result.worst_frame = frame.index;
+    }
+    std::nth_element(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2), times.end());
+    result.median_ms = times[times.size() / 2];
+    return result;
 }
 
 std::string to_csv(std::span<const FrameStatistics> frames) {

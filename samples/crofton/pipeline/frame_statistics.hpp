@@ -33,6 +33,15 @@ struct OccludedFrame {
     std::vector<depth::VisibleCluster> clusters;  // by depth: the triangles to draw, of instances
 };
 
+// What came and went before a frame of a world of regions.
+struct StreamedFrame {
+    std::uint64_t attached = 0;  // regions, in this frame
+    std::uint64_t came = 0, went = 0;
+    double attach_us = 0.0;        // to attach, to detach, and to update the world: a part of the frame's update_us
+    double wait_us = 0.0;          // for regions that are needed and were not prepared; in no other time
+    double longest_load_ms = 0.0;  // that a thread prepared a region that came
+};
+
 // All but `occlusion` is without occlusion.
 struct FrameStatistics {
     std::uint32_t index = 0;
@@ -61,6 +70,7 @@ struct FrameStatistics {
     std::vector<std::uint32_t> visible_ids;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> colliding_ids;
     std::optional<OccludedFrame> occlusion;
+    std::optional<StreamedFrame> regions;
 };
 
 // The result of --verify: mismatches by kind, and a line about each of the first few.
@@ -107,6 +117,15 @@ struct MeanSeen {
     }
 };
 [[nodiscard]] std::optional<MeanSeen> mean_seen(std::span<const FrameStatistics> frames);
+
+// What streaming costs, over frames of a world of regions; nothing where it is none. Milliseconds are those to update
+// and to cull.
+struct Hitches {
+    std::uint64_t came = 0, went = 0, most_attached = 0;
+    double median_ms = 0.0, worst_ms = 0.0, wait_ms = 0.0, longest_load_ms = 0.0;
+    std::uint32_t worst_frame = 0;
+};
+[[nodiscard]] std::optional<Hitches> hitches(std::span<const FrameStatistics> frames);
 
 [[nodiscard]] Json to_json(const FrameStatistics& frame, bool with_ids);
 [[nodiscard]] Json summary_json(std::span<const FrameStatistics> frames,

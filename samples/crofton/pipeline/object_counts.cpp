@@ -9,17 +9,17 @@
 
 namespace crofton::pipeline {
 
-ObjectCounts ObjectCounter::count(const scene::Scene& scene, const Frustum& frustum,
+ObjectCounts ObjectCounter::count(const Drawables& drawables, const Frustum& frustum,
                                   std::span<const scene::InstanceId> visible, std::span<const cull::Verdict> verdicts) {
     ObjectCounts counts;
     for (const scene::InstanceId instance : visible) {
-        const TriangleMesh& mesh = scene.mesh(scene.mesh_of(instance));
+        const TriangleMesh& mesh = drawables.mesh(drawables.mesh_of(instance));
         counts.triangles_submitted += mesh.triangle_count();
         if (verdicts[instance] == cull::Verdict::inside) {
             counts.triangles_passed += mesh.triangle_count();
             continue;
         }
-        const Transform& world = scene.world(scene.node_of(instance));
+        const Transform world = drawables.world_of(instance);
         points_.resize(mesh.positions.size());
         outside_.resize(mesh.positions.size());
         bool all_inside = true;
@@ -51,13 +51,13 @@ ObjectCounts ObjectCounter::count(const scene::Scene& scene, const Frustum& frus
     return counts;
 }
 
-std::uint64_t ObjectCounter::count(const scene::Scene& scene, const Frustum& frustum, const SceneClusters& clusters,
+std::uint64_t ObjectCounter::count(const Drawables& drawables, const Frustum& frustum, const SceneClusters& clusters,
                                    std::span<const depth::VisibleCluster> visible) {
     std::uint64_t passed = 0;
     for (const depth::VisibleCluster& c : visible) {
-        const scene::MeshId mesh_id = scene.mesh_of(c.object);
-        const TriangleMesh& mesh = scene.mesh(mesh_id);
-        const Transform& world = scene.world(scene.node_of(c.object));
+        const scene::MeshId mesh_id = drawables.mesh_of(c.object);
+        const TriangleMesh& mesh = drawables.mesh(mesh_id);
+        const Transform world = drawables.world_of(c.object);
         const depth::ClusteredMesh& cut = clusters.meshes[mesh_id];
         const std::uint32_t first = cut.clusters()[c.cluster].first_triangle;
         for (std::uint64_t left = c.triangles; left != 0; left &= left - 1) {

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "drawables.hpp"
 #include "scene_clusters.hpp"
 
 namespace crofton::pipeline {
@@ -23,12 +24,12 @@ struct ObjectCounts {
 class ObjectCounter {
   public:
     // `verdicts` by instance; only straddling instances are looked into.
-    [[nodiscard]] ObjectCounts count(const scene::Scene& scene, const Frustum& frustum,
+    [[nodiscard]] ObjectCounts count(const Drawables& drawables, const Frustum& frustum,
                                      std::span<const scene::InstanceId> visible,
                                      std::span<const cull::Verdict> verdicts);
 
     // How many of these triangles meet the frustum, exactly; objects are instances.
-    [[nodiscard]] std::uint64_t count(const scene::Scene& scene, const Frustum& frustum, const SceneClusters& clusters,
+    [[nodiscard]] std::uint64_t count(const Drawables& drawables, const Frustum& frustum, const SceneClusters& clusters,
                                       std::span<const depth::VisibleCluster> visible);
 
   private:

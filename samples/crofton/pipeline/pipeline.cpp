@@ -256,7 +256,7 @@ struct Pipeline::State {
             if (verdicts[id] != cull::Verdict::outside) frame.visible_ids.push_back(id);
         frame.visible = frame.visible_ids.size();
         if (!options.count_triangles) return {};
-        const ObjectCounts counts = counter.count(scene, frustum, frame.visible_ids, verdicts);
+        const ObjectCounts counts = counter.count(SceneDrawables(scene), frustum, frame.visible_ids, verdicts);
         frame.triangles_submitted = counts.triangles_submitted;
         frame.triangles_passed = counts.triangles_passed;
         return {};
@@ -279,7 +279,8 @@ struct Pipeline::State {
         frame.occlude_us = microseconds_since(start);
         frame.visible = frame.visible_ids.size();
         frame.triangles_submitted = depth_culler.statistics().triangles_listed;
-        if (options.count_triangles) frame.triangles_passed = counter.count(scene, frustum, *clusters, frame.clusters);
+        if (options.count_triangles)
+            frame.triangles_passed = counter.count(SceneDrawables(scene), frustum, *clusters, frame.clusters);
         return {};
     }
 
@@ -361,7 +362,7 @@ Result<FrameStatistics> Pipeline::run(const Camera& camera) {
     frame.nodes_tested = s.nodes_tested();
     frame.visible_ids = s.visible_ids;
     if (s.options.count_triangles) {
-        const ObjectCounts counts = s.counter.count(s.scene, *frustum, s.visible_ids, s.verdicts);
+        const ObjectCounts counts = s.counter.count(SceneDrawables(s.scene), *frustum, s.visible_ids, s.verdicts);
         frame.triangles_submitted = counts.triangles_submitted;
         frame.triangles_passed = counts.triangles_passed;
         frame.improper = counts.improper;

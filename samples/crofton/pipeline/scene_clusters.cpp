@@ -2,8 +2,9 @@
 #include "scene_clusters.hpp"
 
 #include <crofton/render/clip_space.hpp>
-#include <glm/matrix.hpp>
 #include <utility>
+
+#include "drawables.hpp"
 
 namespace crofton::pipeline {
 
@@ -36,12 +37,6 @@ Result<SceneClusters> cut_scene(const scene::Scene& scene, Executor& executor) {
     return result;
 }
 
-bool is_one_sided(const scene::Scene& scene, std::span<const std::uint8_t> one_sided, scene::InstanceId instance) {
-    const scene::MeshId mesh = scene.mesh_of(instance);
-    return mesh < one_sided.size() && one_sided[mesh] != 0 &&
-           glm::determinant(scene.world(scene.node_of(instance)).linear) > 0.0;
-}
-
 void append_depth_objects(const scene::Scene& scene, const SceneClusters& clusters,
                           std::span<const std::uint8_t> one_sided, std::span<const scene::InstanceId> instances,
                           const Camera& camera, std::vector<depth::DepthObject>& objects) {
@@ -50,7 +45,7 @@ void append_depth_objects(const scene::Scene& scene, const SceneClusters& cluste
         const Transform& place = scene.world(scene.node_of(instance));
         objects.push_back({.mesh = &clusters.meshes[scene.mesh_of(instance)],
                            .to_clip = to_clip(place.linear, place.translation),
-                           .one_sided = is_one_sided(scene, one_sided, instance)});
+                           .one_sided = is_one_sided(SceneDrawables(scene), one_sided, instance)});
     }
 }
 

@@ -26,11 +26,6 @@ struct SceneClusters {
 // Errors: as ClusteredMesh::cut(), with the mesh's number as the item.
 [[nodiscard]] Result<SceneClusters> cut_scene(const scene::Scene& scene, Executor& executor);
 
-// Back faces of the instance are not seen, by flags of its mesh: 0 beyond their end. Mirrored, fronts and backs change
-// places: such instances show both.
-[[nodiscard]] bool is_one_sided(const scene::Scene& scene, std::span<const std::uint8_t> one_sided,
-                                scene::InstanceId instance);
-
 // These instances as DepthCuller asks them, in their order, behind those that `objects` holds.
 void append_depth_objects(const scene::Scene& scene, const SceneClusters& clusters,
                           std::span<const std::uint8_t> one_sided, std::span<const scene::InstanceId> instances,

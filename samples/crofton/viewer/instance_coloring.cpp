@@ -30,6 +30,15 @@ constexpr std::array<glm::vec3, 6> kDepthColors{{{0.60f, 0.05f, 0.05f},
                                                  {0.10f, 0.15f, 0.70f},
                                                  {0.40f, 0.05f, 0.55f}}};
 
+// Neighbouring regions mostly differ.
+constexpr std::array<glm::vec3, 7> kRegionColors{{{0.55f, 0.10f, 0.08f},
+                                                  {0.10f, 0.35f, 0.60f},
+                                                  {0.55f, 0.42f, 0.06f},
+                                                  {0.12f, 0.45f, 0.16f},
+                                                  {0.42f, 0.12f, 0.50f},
+                                                  {0.06f, 0.42f, 0.42f},
+                                                  {0.60f, 0.24f, 0.36f}}};
+
 }  // namespace
 
 void InstanceColoring::count(const char* name, const glm::vec3& color) {
@@ -38,13 +47,16 @@ void InstanceColoring::count(const char* name, const glm::vec3& color) {
 
 void InstanceColoring::classify(const LoadedScene& loaded, const pipeline::FrameStatistics& frame, Coloring coloring,
                                 scene::InstanceId selected, std::span<const scene::NodeId> hiders) {
-    const auto verdicts = loaded.pipeline().verdicts();
     counts_.clear();
+    if (const pipeline::RegionPipeline* const regions = loaded.regions())
+        return classify_regions(*regions, frame, coloring);
+    const auto verdicts = loaded.pipeline().verdicts();
     tint_of_.assign(verdicts.size(), kPlain);
     switch (coloring) {
         case Coloring::lit:
         case Coloring::shape:
         case Coloring::clusters:
+        case Coloring::regions:
             break;
         case Coloring::verdict:
             count("inside", palette::kInside);
@@ -60,7 +72,8 @@ void InstanceColoring::classify(const LoadedScene& loaded, const pipeline::Frame
             for (const scene::InstanceId i : frame.visible_ids) {
                 tint_of_[i] = verdicts[i] == cull::Verdict::inside ? 0 : 1;
                 if (tint_of_[i] == 1 && frustum &&
-                    counter_.count(loaded.scene(), *frustum, std::span(&i, 1), verdicts).improper > 0)
+                    counter_.count(pipeline::SceneDrawables(loaded.scene()), *frustum, std::span(&i, 1), verdicts)
+                            .improper > 0)
                     tint_of_[i] = 2;
             }
             break;
@@ -98,6 +111,25 @@ void InstanceColoring::classify(const LoadedScene& loaded, const pipeline::Frame
         tint_of_[selected] = static_cast<std::uint8_t>(counts_.size() - 1);
         counts_.back().instances = 1;
     }
+}
+
+void InstanceColoring::classify_regions(const pipeline::RegionPipeline& regions, const pipeline::FrameStatistics& frame,
+                                        Coloring coloring) {
+    const auto verdicts = regions.verdicts();
+    tint_of_.resize(verdicts.size(), kPlain);
+    if (coloring == Coloring::verdict) {
+        count("inside", palette::kInside);
+        count("straddling", palette::kStraddling);
+    }
+    for (const scene::InstanceId i : frame.visible_ids) {
+        tint_of_[i] = kPlain;
+        if (coloring == Coloring::verdict) tint_of_[i] = verdicts[i] == cull::Verdict::inside ? 0 : 1;
+        if (coloring == Coloring::regions)
+            tint_of_[i] = static_cast<std::uint8_t>(regions.place_of(i) % kRegionColors.size());
+        if (coloring == Coloring::verdict) ++counts_[tint_of_[i]].instances;
+    }
+    if (coloring != Coloring::regions) return;
+    for (const glm::vec3& color : kRegionColors) count("", color);
 }
 
 std::uint64_t InstanceColoring::tint_nodes(const scene::Scene& scene, std::span<const scene::InstanceId> instances,

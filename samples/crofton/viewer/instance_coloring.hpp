@@ -60,6 +60,8 @@ class InstanceColoring {
                              std::span<const scene::NodeId> nodes, std::uint8_t tint);
     void paint_clusters(const pipeline::DrawList& list, const ClusterColoring& clusters);
     void classify_visible_set(const LoadedScene& loaded, const pipeline::FrameStatistics& frame);
+    void classify_regions(const pipeline::RegionPipeline& regions, const pipeline::FrameStatistics& frame,
+                          Coloring coloring);
     void classify_occlusion(const LoadedScene& loaded, const pipeline::FrameStatistics& frame);
 
     std::vector<std::uint8_t> tint_of_;  // by instance: index into counts_, kPlain for the vertices' own colours

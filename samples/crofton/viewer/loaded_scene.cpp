@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "loaded_scene.hpp"
 
+#include <algorithm>
+
 #include <chrono>
 #include <crofton/geometry/box.hpp>
 #include <glm/geometric.hpp>
@@ -54,6 +56,7 @@ bool same(const pipeline::PipelineOptions& a, const pipeline::PipelineOptions& b
 
 Result<std::unique_ptr<LoadedScene>> LoadedScene::load(const SceneRequest& request, const Method& method,
                                                        const Settings& settings, const LoadedScene* like) {
+    if (pipeline::holds_regions(request.source)) return load_regions(request, settings);
     const auto criterion = pipeline::criterion_for(method.bounds, typical_camera());
     if (!criterion) return tl::unexpected(criterion.error());
     assets::LoadOptions options;
@@ -85,6 +88,23 @@ Result<std::unique_ptr<LoadedScene>> LoadedScene::load(const SceneRequest& reque
     return loaded;
 }
 
+Result<std::unique_ptr<LoadedScene>> LoadedScene::load_regions(const SceneRequest& request, const Settings& settings) {
+    auto regions = pipeline::RegionPipeline::open(
+        request.source, {.stream = {.waits = request.waits_for_regions, .largest_file = request.limits.bytes}});
+    if (!regions) return tl::unexpected(std::move(regions.error()));
+    std::unique_ptr<LoadedScene> loaded(new LoadedScene({request.source, scene::Scene(), {}, {}, {}, {}}));
+    loaded->regions_.emplace(std::move(*regions));
+    const pipeline::RegionStream& stream = loaded->regions_->stream();
+    // Looked at first: the region with the most objects.
+    const auto most = std::ranges::max_element(stream.index(), {}, &bake::RegionFile::objects);
+    loaded->extent_ = stream.bounds();
+    loaded->focus_ = {most->bounds.min + most->origin, most->bounds.max + most->origin};
+    loaded->shapes_.emplace(loaded->scene());
+    if (auto configured = loaded->configure({}, settings); !configured)
+        return tl::unexpected(std::move(configured.error()));
+    return loaded;
+}
+
 Result<void> LoadedScene::take_baked(const SceneRequest& request, const Method& method, const LoadedScene* like) {
     // The scene's file may have changed since it was loaded.
     const bool same = like != nullptr && like->method_.triangulation == method.triangulation &&
@@ -111,6 +131,7 @@ Result<void> LoadedScene::take_baked(const SceneRequest& request, const Method& 
 }
 
 bool LoadedScene::needs_reload(const Method& method) const {
+    if (regions_) return false;
     if (method.triangulation != method_.triangulation) return true;
     if (!uses_own_boxes(method.bounds) && !uses_own_boxes(method_.bounds)) return false;
     return method.bounds != method_.bounds;
@@ -141,6 +162,7 @@ void LoadedScene::animate(std::uint32_t frame) {
 }
 
 Result<pipeline::FrameStatistics> LoadedScene::run(const Camera& camera) {
+    if (regions_) return regions_->run(camera, serial_executor());
     auto frame = pipeline_->run(camera);
     if (!frame) return frame;
     frame->update_us += update_us_;

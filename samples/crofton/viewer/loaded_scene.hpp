@@ -10,6 +10,7 @@
 #include "occlusion.hpp"
 #include "pipeline/baked_parts.hpp"
 #include "pipeline/pipeline.hpp"
+#include "pipeline/region_pipeline.hpp"
 #include "settings.hpp"
 
 namespace crofton::viewer {
@@ -22,6 +23,7 @@ struct SceneRequest {
     std::uint32_t instances = 0;
     assets::ReadLimits limits = {};
     bool strict = false;
+    bool waits_for_regions = false;  // of a folder of regions, so that pictures do not depend on the time
 };
 
 class LoadedScene {
@@ -50,6 +52,9 @@ class LoadedScene {
     [[nodiscard]] const pvs::Pvs* pvs() const { return baked_.pvs.get(); }
     // Clusters of the meshes that the scene's file had; nullptr: none.
     [[nodiscard]] std::shared_ptr<const pipeline::SceneClusters> clusters() const { return clusters_; }
+    // The source is a folder of regions: scene() is then empty, and only colourings of instances work. nullptr: it is
+    // none.
+    [[nodiscard]] const pipeline::RegionPipeline* regions() const { return regions_ ? &*regions_ : nullptr; }
     [[nodiscard]] InstanceShapes& shapes() { return *shapes_; }
 
     [[nodiscard]] const assets::SceneSource& source() const { return source_; }
@@ -62,10 +67,13 @@ class LoadedScene {
 
   private:
     explicit LoadedScene(assets::SceneSource source) : source_(std::move(source)) {}
+    [[nodiscard]] static Result<std::unique_ptr<LoadedScene>> load_regions(const SceneRequest& request,
+                                                                           const Settings& settings);
     [[nodiscard]] Result<void> take_baked(const SceneRequest& request, const Method& method, const LoadedScene* like);
 
     assets::SceneSource source_;
     std::optional<pipeline::Pipeline> pipeline_;
+    std::optional<pipeline::RegionPipeline> regions_;
     std::optional<InstanceShapes> shapes_;
     pipeline::BakedParts baked_;
     std::shared_ptr<const pipeline::SceneClusters> clusters_;

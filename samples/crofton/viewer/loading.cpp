@@ -37,6 +37,7 @@ Result<void> Session::start() {
         if (auto started = start_window(); !started) return started;
     if (auto started = start_device(); !started) return started;
     if (auto started = start_interface(); !started) return started;
+    options_.scene.waits_for_regions = unattended();
     if (auto loaded = load(options_.scene); !loaded) return loaded;
     return load_replay();
 }
@@ -132,7 +133,7 @@ Result<void> Session::load(const SceneRequest& request) {
         const std::vector<glm::dvec3>& walk = loaded_->source().walk;
         if (walk.size() > 1)
             controller_.stand(walk[0], walk[1], pipeline::FreeSpace::kPersonEye);
-        else
+        else if (!loaded_->regions())
             stand_inside();
         culling_camera_ = controller_.camera;
         if (window_) window_->set_title("Crofton: " + loaded_->source().name + " (F1: help)");
@@ -145,9 +146,38 @@ Result<void> Session::load(const SceneRequest& request) {
 }
 
 void Session::list_geometry() {
+    if (const pipeline::RegionPipeline* const regions = loaded_->regions()) {
+        listed_meshes_ = regions->mesh_revision();
+        list_ = std::make_unique<pipeline::DrawList>(
+            regions->drawables(), pipeline::DrawList::Looks{regions->unlit(), regions->one_sided(), regions->flat()},
+            nullptr);
+        return;
+    }
     const assets::SceneSource& source = loaded_->source();
     list_ = std::make_unique<pipeline::DrawList>(
         source.scene, pipeline::DrawList::Looks{source.unlit, source.one_sided, source.flat}, clusters_);
+}
+
+// Regions that have come may have brought meshes.
+Result<void> Session::follow_regions() {
+    if (!loaded_->regions() || loaded_->regions()->mesh_revision() == listed_meshes_) return {};
+    list_geometry();
+    return upload_geometry();
+}
+
+// What needs a scene, or bounds of all objects.
+void Session::leave_out_what_regions_lack() {
+    if (!loaded_->regions()) return;
+    Settings& s = settings_;
+    const bool shows = s.coloring == Coloring::lit || s.coloring == Coloring::verdict ||
+                       s.coloring == Coloring::shape || s.coloring == Coloring::regions;
+    if (shows && !s.compare && !s.outside && !s.bounds && !s.hulls && !s.depth_buffer && !s.method.occlude &&
+        s.cascades == 1 && s.tree_level < 0)
+        return;
+    if (!shows) s.coloring = Coloring::regions;
+    s.compare = s.outside = s.bounds = s.hulls = s.depth_buffer = s.method.occlude = false;
+    s.cascades = 1, s.tree_level = -1;
+    note("over regions there are the colourings lit, verdict, shape and regions, and no overlays of objects");
 }
 
 Result<void> Session::cut_clusters() {
@@ -185,6 +215,7 @@ Result<void> Session::upload_geometry() {
 }
 
 Result<void> Session::follow_settings() {
+    leave_out_what_regions_lack();
     // A file may have gone or changed since: the scene on show stays, with the method that it has.
     if (loaded_->needs_reload(settings_.method)) {
         if (auto loaded = load(request_); !loaded) {
@@ -224,7 +255,8 @@ Result<void> Session::load_replay() {
     if (path.kind == "street") street = pipeline::street_of(loaded_->source(), loaded_->focus());
     if (!street.remark.empty()) report({ErrorCode::unsupported, kNoItem, street.remark});
     street.set(path);
-    auto made = pipeline::make_camera_path(path, loaded_->focus(), street.walk);
+    auto made =
+        pipeline::make_camera_path(path, loaded_->regions() ? loaded_->extent() : loaded_->focus(), street.walk);
     if (!made) return tl::unexpected(std::move(made.error()));
     path_ = std::move(*made);
     replaying_ = true;

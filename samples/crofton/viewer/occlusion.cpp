@@ -40,7 +40,7 @@ void Occlusion::apply(const scene::Scene& scene, const pipeline::Pipeline& pipel
     frame.triangles_submitted = left.triangles_submitted;
     frame.triangles_passed = left.triangles_passed;
     if (const auto frustum = frustum_of(frame.camera))
-        frame.improper -= counter_.count(scene, *frustum, hidden_, verdicts).improper;
+        frame.improper -= counter_.count(pipeline::SceneDrawables(scene), *frustum, hidden_, verdicts).improper;
     frame.visible_ids = std::move(left.visible_ids);
     frame.occlusion.reset();
 }

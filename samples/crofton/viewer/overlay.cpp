@@ -47,6 +47,7 @@ void Overlay::draw(LineList& lines, const Settings& settings, const LoadedScene&
                    std::span<const Cascade> cascades, scene::InstanceId selected, bool show_frustum) {
     const scene::Scene& scene = loaded.scene();
     legend_.clear();
+    if (loaded.regions() && settings.coloring == Coloring::regions) draw_regions(lines, loaded.regions()->stream());
     draw_bounds(lines, settings, loaded, frame);
     if (settings.tree_level >= 0) draw_tree_level(lines, loaded.pipeline().world().tree(), settings.tree_level);
     contacts_ = separations_ = hulls_ = manifold_points_ = 0;
@@ -71,6 +72,26 @@ void Overlay::draw(LineList& lines, const Settings& settings, const LoadedScene&
     if (show_frustum || settings.freeze)
         for (const Cascade& cascade : cascades)
             if (cascades.size() > 1) lines.frustum(cascade.camera, cascade.camera.far_distance, cascade.color);
+}
+
+void Overlay::draw_regions(LineList& lines, const pipeline::RegionStream& stream) {
+    constexpr std::uint32_t kAttached = rgba(120, 230, 120), kComing = rgba(255, 220, 80), kAway = rgba(90, 95, 110);
+    std::vector<bool> is_attached(stream.index().size());
+    for (const pipeline::RegionStream::Attached& entry : stream.attached()) is_attached[entry.place] = true;
+    std::uint64_t coming = 0, away = 0;
+    for (std::uint32_t place = 0; place < stream.index().size(); ++place) {
+        const bake::RegionFile& file = stream.index()[place];
+        const bool comes = !is_attached[place] && stream.is_coming(place);
+        coming += comes;
+        away += !is_attached[place] && !comes;
+        lines.box(obb_of(Aabb{file.bounds.min + file.origin, file.bounds.max + file.origin}), is_attached[place]
+                                                                                                  ? kAttached
+                                                                                              : comes ? kComing
+                                                                                                      : kAway);
+    }
+    legend_.push_back({"regions attached", kAttached, stream.attached().size()});
+    legend_.push_back({"regions being prepared, or ready", kComing, coming});
+    legend_.push_back({"regions that are away", kAway, away});
 }
 
 void Overlay::draw_bounds(LineList& lines, const Settings& settings, const LoadedScene& loaded,

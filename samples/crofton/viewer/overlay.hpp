@@ -51,6 +51,8 @@ class Overlay {
   private:
     void draw_bounds(LineList& lines, const Settings& settings, const LoadedScene& loaded,
                      const pipeline::FrameStatistics& frame);
+    // Boxes of regions: attached, coming, away.
+    void draw_regions(LineList& lines, const pipeline::RegionStream& stream);
     // The root is level 0.
     void draw_tree_level(LineList& lines, const boxtree::BoxTree& tree, int level);
     void draw_pairs(LineList& lines, const LoadedScene& loaded, const pipeline::FrameStatistics& frame);

@@ -2,6 +2,7 @@
 #include "panels.hpp"
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -64,7 +65,9 @@ void visible_set_hint(const PanelInput& input) {
 
 void legend(const PanelInput& input) {
     for (const InstanceColoring::Count& tint : input.instance_coloring.counts()) {
-        if (tint.instances == 0 && input.settings.coloring == Coloring::depth) continue;
+        if (tint.instances == 0 &&
+            (input.settings.coloring == Coloring::depth || input.settings.coloring == Coloring::regions))
+            continue;
         sample(display_color(tint.color), 1.0f);
         ImGui::Text("%s: %s", tint.name, with_thousands(tint.instances).c_str());
     }
@@ -92,6 +95,17 @@ void legend(const PanelInput& input) {
         }
     if (input.settings.coloring == Coloring::shape) shape_legend();
     if (input.settings.coloring == Coloring::visible_set) visible_set_hint(input);
+}
+
+// What streaming costs.
+void hitches(const PanelInput& input) {
+    if (!input.frame.regions) return;
+    const auto plot =
+        input.frame_history.history([](const HistoryEntry& e) { return 1e-3 * (e.frame.update_us + e.frame.cull_us); });
+    const double worst = plot.empty() ? 0.0 : static_cast<double>(*std::max_element(plot.begin(), plot.end()));
+    ImGui::Text("update and cull: worst of %zu frames %.2f ms", plot.size(), worst);
+    ImGui::PlotLines("ms", plot.data(), static_cast<int>(plot.size()), 0, nullptr, 0.0f, FLT_MAX,
+                     ImVec2(0.0f, 3.0f * ImGui::GetFontSize()));
 }
 
 void heading(const PanelInput& input) {
@@ -136,6 +150,7 @@ void main_panel(const PanelInput& input, PanelWish& wish) {
     if (ImGui::Begin("Crofton")) {
         heading(input);
         statistics_panel(input);
+        hitches(input);
         legend(input);
         if (ImGui::CollapsingHeader("Switches", ImGuiTreeNodeFlags_DefaultOpen)) switches_panel(input, wish);
         if (unfolded("More statistics", input.settings.more)) more_statistics(input);

@@ -145,9 +145,13 @@ void scene_panel(const PanelInput& input, PanelWish& wish) {
     ImGui::SetNextWindowSize(ImVec2(width, std::min(18.0f * font, 0.45f * display.y)), when);
     if (input.fold) ImGui::SetNextWindowCollapsed(*input.fold, ImGuiCond_Always);
     if (ImGui::Begin("Scene")) {
-        ImGui::TextWrapped("%s nodes, %s instances", with_thousands(input.loaded.scene().node_count()).c_str(),
-                           with_thousands(input.loaded.scene().instance_count()).c_str());
-        ImGui::Text("%s triangles", with_thousands(input.loaded.triangle_count()).c_str());
+        if (const pipeline::RegionPipeline* const regions = input.loaded.regions())
+            ImGui::TextWrapped("%s objects in %zu regions", with_thousands(regions->stream().object_count()).c_str(),
+                               regions->stream().index().size());
+        else
+            ImGui::TextWrapped("%s nodes, %s instances", with_thousands(input.loaded.scene().node_count()).c_str(),
+                               with_thousands(input.loaded.scene().instance_count()).c_str());
+        if (!input.loaded.regions()) ImGui::Text("%s triangles", with_thousands(input.loaded.triangle_count()).c_str());
         show_selection(input, wish);
         ImGui::Separator();
         if (ImGui::BeginChild("nodes")) show_children(input, wish, scene::kNone, 0);

@@ -83,6 +83,7 @@ Result<void> Session::try_turn() {
     // A turn that is taken again, after the device failed, shows the same moment.
     if (!std::exchange(advanced_, true)) advance(seconds);
     if (auto culled = cull(); !culled) return lasting(std::move(culled));
+    if (auto followed = follow_regions(); !followed) return followed;
     if (auto started = start_drawing(); !started) return started;
     // The device draws; what needs no picture is done meanwhile.
     frame_.triangles_clipped = list_->predict_clipped();
@@ -162,6 +163,8 @@ Result<void> Session::cull() {
     auto frame = loaded_->run(culling_camera_);
     if (!frame) return tl::unexpected(std::move(frame.error()));
     frame_ = std::move(*frame);
+    // What is seen is counted no farther than regions are attached.
+    if (loaded_->regions()) culling_camera_.far_distance = frame_.camera.far_distance;
     if (other_) {
         auto compared = other_->run(culling_camera_);
         if (!compared) return tl::unexpected(std::move(compared.error()));
@@ -241,7 +244,8 @@ Result<void> Session::submit(const Camera& camera, std::uint32_t picture) {
         frame.environment.horizon = glm::vec3(0.012f, 0.014f, 0.02f);
     } else {
         const bool hazy = loaded_->source().unlit.empty() && picture == 0;
-        const double distance = hazy ? 2.5 * glm::length(loaded_->extent().half_extents()) : 0.0;
+        double distance = hazy ? 2.5 * glm::length(loaded_->extent().half_extents()) : 0.0;
+        if (hazy && loaded_->regions()) distance = loaded_->regions()->stream().distance();
         frame.environment.haze_distance = static_cast<float>(distance);
     }
     return rasterizer_->submit(frame, picture);

@@ -50,6 +50,8 @@ class Session {
     [[nodiscard]] Result<void> load(const SceneRequest& request);
     void stand_inside();
     void list_geometry();
+    [[nodiscard]] Result<void> follow_regions();
+    void leave_out_what_regions_lack();
     [[nodiscard]] Result<void> upload_geometry();
     [[nodiscard]] Result<void> cut_clusters();
     [[nodiscard]] Result<void> follow_settings();
@@ -139,7 +141,8 @@ class Session {
     std::size_t replayed_ = 0;
     bool replaying_ = false, is_recording_ = false, quit_ = false, step_ = false, stale_size_ = true;
     bool lose_device_ = false, is_lasting_ = false, advanced_ = false;
-    bool stale_geometry_ = false;  // what is on the device is of another scene, or nothing
+    std::uint64_t listed_meshes_ = 0;  // the revision of the regions' meshes that list_ has
+    bool stale_geometry_ = false;      // what is on the device is of another scene, or nothing
     int recoveries_ = 0;
     std::vector<std::string> lost_messages_;  // validation's, of devices that are gone
     std::uint32_t frame_index_ = 0;

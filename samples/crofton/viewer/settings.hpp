@@ -20,10 +20,11 @@ enum class Coloring : std::uint8_t {
     clusters,
     collision,
     depth,
-    shape
+    shape,
+    regions
 };
 inline constexpr const char* kColoringNames[] = {"lit",      "verdict",   "improper", "occlusion", "visible-set",
-                                                 "clusters", "collision", "depth",    "shape"};
+                                                 "clusters", "collision", "depth",    "shape",     "regions"};
 
 // How polygons and the planar patches of meshes are cut into triangles; `loaded`: as the scene came.
 enum class Triangulation : std::uint8_t { loaded, ear, delaunay, minimum_weight };

@@ -226,6 +226,7 @@ void history_plots(const FrameHistory& frame_history) {
     ImGui::TextDisabled("last %zu frames, each from 0 up", FrameHistory::kHistory);
     plot("frame", "%.1f ms", [](const HistoryEntry& e) { return e.frame_us * 1e-3; });
     plot("draw", "%.1f ms", [](const HistoryEntry& e) { return e.frame.draw_us * 1e-3; });
+    plot("update", "%.0f \u00b5s", [](const HistoryEntry& e) { return e.frame.update_us; });
     plot("cull", "%.0f \u00b5s", [](const HistoryEntry& e) { return e.frame.cull_us; });
     plot("collide", "%.0f \u00b5s", [](const HistoryEntry& e) { return e.frame.collide_us; });
     plot("visible", "%.0f instances", [](const HistoryEntry& e) { return static_cast<double>(e.frame.visible); });

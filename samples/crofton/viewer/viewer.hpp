@@ -18,7 +18,7 @@ struct ViewerOptions {
     float scale = 0.0f;  // of texts and panels; 0: as the window system says
     bool validation = false;
     std::string device;               // part of its name; empty: CROFTON_DEVICE or the best
-    std::string camera;               // a path to replay: orbit, street, random or a file; empty: none
+    std::string camera;               // a path to replay: orbit, street, flight, random or a file; empty: none
     std::string script;               // a file of keys, cameras, switches and pictures
     std::string screenshot;           // taken after the last frame
     std::uint32_t frames = 0;         // quit after so many; 0: when the window is closed or the script ends

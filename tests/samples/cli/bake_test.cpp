@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
+#include <chrono>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
+#include <thread>
+#include <vector>
 
+#include "child.hpp"
 #include "run_cli.hpp"
 
 using namespace crofton::test;
@@ -222,5 +227,101 @@ TEST_SUITE("cli/bake") {
         CHECK(run_cli("bake room --regions 2x2").status == 2);
         CHECK(run_cli("bake room --folder " + scratch().file("none")).status == 2);
         CHECK(run_cli("bake room --regions 2x2 --folder /proc/none").status == 2);
+    }
+
+    TEST_CASE("regions that are baked in shards and merged, or resumed, have the same bytes as one run") {
+        const std::string bake = "bake town --instances 3000 --no-occluders --regions 4x3 --json - --folder ";
+        const std::string one = scratch().file("regions_whole"), parts = scratch().file("parts");
+        const auto part = [&](int i) { return scratch().file("region_part" + std::to_string(i)); };
+        const auto shard = [&](int i) {
+            return run_cli(bake + parts + " --shard " + std::to_string(i) + "/3 --state " + part(i));
+        };
+        const auto merge = [&](const std::string& states, const std::string& folder) {
+            return run_cli("merge " + states + " --shards 3 --out " + folder + "/index.crofton");
+        };
+        const auto same = [&](const std::string& other) {
+            std::size_t files = 0;
+            for (const auto& entry : std::filesystem::directory_iterator(one)) {
+                const std::string name = "/" + entry.path().filename().string();
+                CHECK(contents_of(one + name) == contents_of(other + name));
+                ++files;
+            }
+            const auto others = std::filesystem::directory_iterator(other);
+            CHECK(files == static_cast<std::size_t>(std::distance(begin(others), end(others))));
+        };
+        const CliRun whole = run_cli(bake + one);
+        REQUIRE_MESSAGE(whole.status == 0, whole.err);
+        REQUIRE(whole.json()["regions"] == 12);
+        for (int i = 0; i < 3; ++i) {
+            const CliRun baked = shard(i);
+            REQUIRE_MESSAGE(baked.status == 0, baked.err);
+            CHECK(baked.json()["regions"] == 4);
+        }
+        // A lost part is named, and there is no index.
+        const CliRun lost = merge(part(0) + " " + part(2) + " " + part(2), parts);
+        CHECK(lost.status == 1);
+        CHECK_MESSAGE(lost.err.find("run again: --shard 1/3") != std::string::npos, lost.err);
+        CHECK_FALSE(std::filesystem::exists(parts + "/index.crofton"));
+        // So is the file of a region that is missing, or is another bake's; running the shard again mends it.
+        const std::string all = part(2) + " " + part(0) + " " + part(1), victim = parts + "/r1_0.crofton";
+        std::filesystem::copy_file(parts + "/r2_0.crofton", victim, std::filesystem::copy_options::overwrite_existing);
+        const CliRun swapped = merge(all, parts);
+        CHECK(swapped.status == 2);
+        CHECK_MESSAGE(swapped.err.find("r1_0.crofton") != std::string::npos, swapped.err);
+        std::filesystem::remove(victim);
+        CHECK(merge(all, parts).err.find("r1_0.crofton") != std::string::npos);
+        const CliRun again = shard(1);
+        REQUIRE_MESSAGE(again.status == 0, again.err);
+        CHECK(again.json()["regions_baked"] == 1);
+        CHECK(again.err.find("r1_0.crofton") != std::string::npos);
+        const CliRun merged = merge(all, parts);
+        REQUIRE_MESSAGE(merged.status == 0, merged.err);
+        same(parts);
+        CHECK(merge(all, scratch().file("elsewhere")).status == 2);
+        CHECK(run_cli("merge " + all + " --out " + parts + "/other.crofton").status == 2);
+        // Parts of another scene or of other options, and damaged ones, are named.
+        REQUIRE(run_cli(bake + scratch().file("others") + " --seed 2 --shard 1/3 --state " + part(3)).status == 0);
+        CHECK(merge(part(0) + " " + part(3), parts).err.find("region_part3: is of another scene") != std::string::npos);
+        CHECK(run_cli(bake + parts + " --no-clusters --shard 1/3 --state " + part(1))
+                  .err.find("region_part1: is of another") != std::string::npos);
+        std::string damaged = contents_of(part(2));
+        damaged[damaged.size() / 2] ^= 1;
+        write_contents(part(3), damaged);
+        CHECK(merge(part(0) + " " + part(3), parts).err.find("region_part3") != std::string::npos);
+        for (const char* wrong : {"--shard 3/3 --state x", "--shard 0/3", "--shard 1 --state x"})
+            CHECK(run_cli(bake + parts + " " + wrong).status == 2);
+        CHECK(run_cli("bake town --shard 0/3 --state x").status == 2);
+    }
+
+    TEST_CASE("regions that an interrupted run has finished are not baked again, and the folder has the same bytes") {
+        const std::vector<std::string> bake{"bake",           "town",      "--instances", "20000",
+                                            "--no-occluders", "--regions", "6x6",         "--folder"};
+        const auto run = [&](const std::string& folder, int signal) {
+            std::vector<std::string> arguments = bake;
+            arguments.push_back(folder);
+            arguments.insert(arguments.end(), {"--json", folder + ".json"});
+            const Child child(arguments, folder + ".out", folder + ".err");
+            while (signal != 0 && (!std::filesystem::is_directory(folder) || std::filesystem::is_empty(folder)))
+                std::this_thread::sleep_for(std::chrono::milliseconds(2));
+            if (signal != 0) child.signal(signal);
+            return child.wait().status;
+        };
+        const std::string cut = scratch().file("cut"), one = scratch().file("uncut");
+        CHECK(run(cut, SIGINT) == 130);
+        CHECK_FALSE(std::filesystem::exists(cut + "/index.crofton"));
+        CHECK(contents_of(cut + ".err").find("the next run continues") != std::string::npos);
+        REQUIRE(run(cut, 0) == 0);
+        REQUIRE(run(one, 0) == 0);
+        const auto resumed = nlohmann::json::parse(contents_of(cut + ".json"));
+        const auto whole = nlohmann::json::parse(contents_of(one + ".json"));
+        CHECK(resumed["regions_baked"].get<int>() < resumed["regions"].get<int>());
+        CHECK(whole["regions_baked"] == whole["regions"]);
+        std::size_t files = 0;
+        for (const auto& entry : std::filesystem::directory_iterator(one)) {
+            CHECK(contents_of(cut + "/" + entry.path().filename().string()) == contents_of(entry.path().string()));
+            ++files;
+        }
+        CHECK(files == whole["regions"].get<std::size_t>() + 1);
+        CHECK_FALSE(std::filesystem::exists(cut + "/unfinished.state"));
     }
 }

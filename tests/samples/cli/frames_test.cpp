@@ -291,4 +291,59 @@ TEST_SUITE("cli/frames") {
         CHECK(contents_of(folder + "/frame_0001.png").substr(1, 3) == "PNG");
         CHECK(says(run.out, "instances"));
     }
+
+    TEST_CASE("a flight over regions counts what the whole scene's frames count, on any number of threads") {
+        const std::string folder = scratch().file("flight"), whole = scratch().file("flight.crofton"),
+                          path = scratch().file("flight.json"),
+                          fly = "frames " + folder + " --frames 24 --no-draw --json ";
+        REQUIRE(run_cli("bake town --instances 3000 --regions 5x4 --folder " + folder).status == 0);
+        REQUIRE(run_cli("bake town --instances 3000 -o " + whole).status == 0);
+        const CliRun flight = run_cli(fly + path + " --ids --occlude");
+        REQUIRE_MESSAGE(flight.status == 0, flight.err);
+        CHECK(says(flight.out, "the first frame was found"));
+        const CliRun scene = run_cli("frames " + whole + " --no-draw --occlude --camera " + path + " --json -");
+        REQUIRE_MESSAGE(scene.status == 0, scene.err);
+        const json here = json::parse(contents_of(path)), there = scene.json();
+        std::size_t visible = 0;
+        for (std::size_t i = 0; i < 24; ++i) {
+            CAPTURE(i);
+            for (const char* key : {"instances", "visible", "inside", "straddling", "improper", "triangles_submitted",
+                                    "triangles_passed", "triangles_clipped"})
+                CHECK(here["frames"][i][key] == there["frames"][i][key]);
+            const json& ids = here["frames"][i]["visible_ids"];
+            CHECK(std::set<int>(ids.begin(), ids.end()).size() == here["frames"][i]["visible"].get<std::size_t>());
+            CHECK(here["frames"][i]["occlusion"]["triangles_passed"] <= here["frames"][i]["triangles_passed"]);
+            visible += ids.size();
+        }
+        CHECK(visible > 1000);
+        const json& regions = here["summary"]["regions"];
+        CHECK(regions["came"].get<int>() > 5);
+        CHECK(regions["went"].get<int>() > 0);
+        // What is loaded when does not matter, but to a flight that waits for nothing.
+        const json again = run_cli(fly + "- --ids --occlude --threads 3").json();
+        for (std::size_t i = 0; i < 24; ++i)
+            for (const char* key : {"visible_ids", "triangles_passed", "nodes_tested"})
+                CHECK(again["frames"][i][key] == here["frames"][i][key]);
+        const CliRun live = run_cli(fly + "- --real-time");
+        REQUIRE_MESSAGE(live.status == 0, live.err);
+        for (const json& frame : live.json()["frames"]) {
+            CHECK(frame["regions"]["came"].get<int>() <= 1);
+            CHECK(frame["regions"]["wait_us"].get<double>() < 1e5);
+        }
+        const CliRun hidden = run_cli(fly + "- --occlude --occlusion occluders");
+        REQUIRE_MESSAGE(hidden.status == 0, hidden.err);
+        CHECK(hidden.json()["summary"]["mean_occlusion_visible"] <= hidden.json()["summary"]["mean_visible"]);
+        // What does not fit is refused, and a damaged region is named.
+        for (const char* wrong : {"--verify", "--bounds aabb", "--cull flat", "--map MAP01", "--camera nowhere"})
+            CHECK(run_cli(fly + "- " + wrong).status == 2);
+        CHECK(says(run_cli(kSmallTown + "--real-time").err, "--real-time"));
+        const std::string victim = folder + "/r2_2.crofton";
+        std::string bytes = contents_of(victim);
+        REQUIRE(!bytes.empty());
+        bytes[bytes.size() / 2] ^= 1;
+        write_contents(victim, bytes);
+        const CliRun damaged = run_cli(fly + "-");
+        CHECK(damaged.status == 2);
+        CHECK_MESSAGE(says(damaged.err, "r2_2.crofton"), damaged.err);
+    }
 }
