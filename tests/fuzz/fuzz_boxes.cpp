@@ -89,7 +89,7 @@ bool box_meets_triangle(const Obb& box, const Triangle& triangle) {
         }
         return rows;
     };
-    if (const auto proof = oracle::proven_feasible(rows_of)) return *proof;
+    if (const auto proof = oracle::proven_feasible<oracle::Rational>(rows_of)) return *proof;
     std::vector<oracle::Inequality> system;
     for (const auto& row : rows_of.template operator()<oracle::Rational>())
         system.push_back({row.normal[0], row.normal[1], row.normal[2], row.offset});

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Is there a point where all of some linear inequalities in three unknowns hold? A linear programme in doubles guesses
-// a proof. Numbers that cannot be wrong (tracked.hpp) check it. The proof is a vertex where all hold, or four
-// inequalities of which a positive combination is 0 ≥ 1 (Farkas 1902). Four are enough by Helly's theorem.
+// a proof. Numbers that cannot be wrong (tracked_numbers.hpp, or exact ones) check it. The proof is a vertex where all
+// hold, or four inequalities of which a positive combination is 0 ≥ 1 (Farkas 1902). Four are enough by Helly's
+// theorem.
 #pragma once
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <oracle/tracked.hpp>
+#include <oracle/tracked_numbers.hpp>
 #include <vector>
 
 namespace crofton::oracle {
@@ -161,7 +162,7 @@ bool proves_infeasible(const std::vector<Row<Number>>& rows, const std::array<in
         const int s = told(weight);
         if (s == kUnknown || s * side < 0) return false;
         if (s != 0) side = s;
-        sum += weight * row(k).offset;
+        sum = sum + weight * row(k).offset;
     }
     const int s = told(sum);
     return s != kUnknown && side * s < 0;
@@ -210,8 +211,9 @@ struct Feasibilities {
 };
 inline Feasibilities feasibilities;
 
-// rows.operator()<Number>(): the inequalities, by that kind of number. Nothing where no proof is found.
-template <class Rows>
+// rows.operator()<Number>(): the inequalities, by that kind of number; Exact is one that never rounds, whose told() is
+// declared. Nothing if no proof is found.
+template <class Exact, class Rows>
 std::optional<bool> proven_feasible(const Rows& rows_of) {
     const auto rows = rows_of.template operator()<Tracked>();
     // As they are; then as if what touches met; then as if it did not.
@@ -223,7 +225,7 @@ std::optional<bool> proven_feasible(const Rows& rows_of) {
     }
     for (const double slack : {1e-12, -1e-12})
         if (const auto answer =
-                detail::proven(rows_of.template operator()<Rational>(), detail::Programme::solve(rows, slack)))
+                detail::proven(rows_of.template operator()<Exact>(), detail::Programme::solve(rows, slack)))
             return ++feasibilities.proven, answer;
     ++feasibilities.eliminated;
     return std::nullopt;

@@ -7,11 +7,9 @@
 #include <memory>
 
 #include "commands.hpp"
-#include "fit_bounds.hpp"
 #include "fit_criterion.hpp"
+#include "fit_modes.hpp"
 #include "fit_output.hpp"
-#include "fit_planar.hpp"
-#include "fit_views.hpp"
 #include "interrupt.hpp"
 #include "json/json.hpp"
 #include "mesh_file.hpp"

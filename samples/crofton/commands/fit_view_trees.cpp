@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fit_view_trees.hpp"
+#include "fit_modes.hpp"
 
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/cull/cull.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fit_views.hpp"
+#include "fit_modes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,6 @@
 #include <glm/geometric.hpp>
 
 #include "commands.hpp"
-#include "fit_view_trees.hpp"
 #include "json/json.hpp"
 #include "mesh_file.hpp"
 #include "pipeline/camera_path.hpp"

@@ -16,8 +16,7 @@
 #include "progress_bar.hpp"
 #include "read_options.hpp"
 #include "report.hpp"
-#include "triangulate_compare.hpp"
-#include "triangulate_meshes.hpp"
+#include "triangulate_modes.hpp"
 
 namespace crofton::cli {
 namespace {

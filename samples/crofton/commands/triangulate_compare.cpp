@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "triangulate_compare.hpp"
+#include "triangulate_modes.hpp"
 
 #include <algorithm>
 #include <array>

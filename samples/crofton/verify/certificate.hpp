@@ -10,11 +10,10 @@ namespace crofton::cli {
 
 enum class Proof : std::uint8_t { meets, disjoint, none };
 
-// A point of the bound that lies in all half-spaces, or a sum of half-spaces, with factors ≥ 0, that excludes the whole
-// bound. The point and the factors are guessed in floating point, in the end by trying all vertices; whether they prove
-// anything is decided exactly: in floating point where an error bound allows it, else by arithmetic on integers of any
-// length. `none` where no guess proves anything: bounds that
-// touch to within rounding.
+// A common point, or a sum of half-spaces, with factors ≥ 0, that excludes the whole bound. Both are guessed in
+// floating point; whether they prove anything is decided exactly: of boxes by tests/oracle/feasible.hpp, of spheres by
+// integers of any length where an error bound does not allow floating point. Returns `none` if no guess proves
+// anything: for bounds that touch to within rounding.
 [[nodiscard]] Proof prove(const Frustum& frustum, const Obb& box);
 [[nodiscard]] Proof prove(const Frustum& frustum, const Aabb& box);
 [[nodiscard]] Proof prove(const Frustum& frustum, const Sphere& sphere);

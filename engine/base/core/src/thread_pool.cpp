@@ -115,7 +115,7 @@ void ThreadPool::parallel_for(std::size_t count, std::size_t grain, RangeTask bo
     State::working_for = outer;
     std::unique_lock lock(state_->mutex);
     state_->job = nullptr;  // who has not begun by now never does
-    // The others are at their last ranges: going to sleep and being woken takes longer than most of those.
+    // The others are at their last ranges, most of which end sooner than this thread could sleep and wake.
     lock.unlock();
     for (int spin = 0; spin < 10000 && state_->busy.load() > 0; ++spin) {
     }

@@ -27,7 +27,7 @@ struct CloseFile {
     void operator()(std::FILE* file) const { std::fclose(file); }
 };
 
-// Qhull writes its complaints to a file; ours are in the Result.
+// Qhull writes its messages to a file; this library returns them in the Result.
 std::FILE* null_file() {
 #if defined(_WIN32)
     return std::fopen("NUL", "w");
@@ -60,7 +60,7 @@ class Qhull {
     qhT state_;
 };
 
-// The input in coordinates of size about 1, with where each came from.
+// The input scaled to size about 1, with the original index of each point.
 struct Prepared {
     Vector<glm::dvec3> points;
     Vector<std::uint32_t> index;
@@ -96,7 +96,7 @@ Result<Prepared> prepare(std::span<const Point> points) {
     return result;
 }
 
-// The point for which `measure` is greatest; the first of several.
+// Returns the point with the greatest `measure`; the first of equals.
 template <class Measure>
 std::uint32_t argmax(const Vector<glm::dvec3>& points, const Measure& measure) {
     std::uint32_t best = 0;
@@ -201,7 +201,7 @@ void drop_inner(Prepared& prepared) {
     prepared.index.resize(kept);
 }
 
-// False if Qhull finds the points too flat for its arithmetic.
+// Returns false if the points are too flat for Qhull's arithmetic.
 bool solid_hull(Prepared& prepared, ConvexHull& hull) {
     if (prepared.points.size() > 1000) drop_inner(prepared);
     Qhull solid;

@@ -36,7 +36,7 @@ bool is_singular(const std::array<glm::dvec4, 4>& rows) {
     return !(std::abs(glm::determinant(scaled)) > 1e-14);
 }
 
-// The point where three planes meet; the caller knows that they do.
+// The point where three planes meet. Requires that they do.
 glm::dvec3 meet(const Plane& a, const Plane& b, const Plane& c) {
     const glm::dvec3 bc = glm::cross(b.normal, c.normal);
     const glm::dvec3 ca = glm::cross(c.normal, a.normal);

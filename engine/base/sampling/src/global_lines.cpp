@@ -20,7 +20,7 @@ SurfacePoint box_surface_point(const glm::dvec3& center, const std::array<glm::d
                                double choice, double s, double t) {
     const std::array<double, 3> areas = {half.y * half.z, half.z * half.x, half.x * half.y};
     double left = choice * 2.0 * (areas[0] + areas[1] + areas[2]);
-    // The last pair takes what rounding leaves over.
+    // The last pair also takes the remainder of rounding.
     int k = 0;
     while (k < 2 && left >= 2.0 * areas[static_cast<std::size_t>(k)])
         left -= 2.0 * areas[static_cast<std::size_t>(k++)];
@@ -68,7 +68,7 @@ void append_line_bundle(const Sphere& ball, double cell_area, Random& random, Ve
     const glm::dvec2 turn = circle_point(random.uniform());
     const glm::dvec3 right = turn.x * x + turn.y * y, up = turn.x * y - turn.y * x;
     const double cell = std::sqrt(cell_area), r = ball.radius;
-    // One after the other: in which order arguments are computed is left to the compiler.
+    // In separate statements, because compilers evaluate arguments in any order.
     const double shift_up = random.uniform(), shift_right = random.uniform();
     const glm::dvec2 shift(shift_right, shift_up);
     // Cells that can hold a point of the disc: their numbers along one axis, the disc being centred at `shift`.

@@ -29,7 +29,7 @@ void philox(std::uint64_t first, std::uint64_t stream, std::uint64_t seed, std::
     const auto product = [&](std::uint32_t factor, auto x)
                              HWY_ATTR { return hn::MulEven(hn::Set(d32, factor), hn::BitCast(d32, x)); };
     for (std::size_t i = 0; i < kPhiloxBlocks; i += hn::Lanes(d)) {
-        // Each word in the lower half of a lane; what stands in the upper half is not looked at.
+        // Each word in the lower half of a lane; the upper half is ignored.
         const auto counter = hn::Add(hn::Set(d, first + i), hn::Iota(d, 0));
         auto c0 = counter, c1 = hn::ShiftRight<32>(counter);
         auto c2 = hn::Set(d, stream), c3 = hn::Set(d, stream >> 32);

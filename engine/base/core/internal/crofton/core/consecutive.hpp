@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Whether indices follow one another: then what they name lies side by side.
+// Whether indices are consecutive, so that the elements they name are contiguous.
 #pragma once
 #include <cstddef>
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Disjoint sets of the numbers below a count; of each set the lowest stands for it.
+// Disjoint sets of the numbers below a count, each represented by its lowest number.
 #pragma once
 #include <algorithm>
 #include <crofton/core/memory.hpp>
@@ -8,7 +8,7 @@
 
 namespace crofton {
 
-// Paths are halved on the way (Tarjan, van Leeuwen 1984).
+// Halves paths on the way (Tarjan, van Leeuwen 1984).
 class DisjointSets {
   public:
     explicit DisjointSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }

@@ -5,7 +5,7 @@
 
 namespace crofton::detail {
 
-// Gives back the memory that a list does not use. Unlike shrink_to_fit, it fails as other allocations do.
+// Releases the unused capacity of a list. Unlike shrink_to_fit, it fails as other allocations do.
 template <class T>
 void drop_spare(Vector<T>& list) {
     if (list.size() != list.capacity())

@@ -37,21 +37,21 @@ template <class Operation>
 // As a failed allocation: throws std::bad_alloc while a Recovery lives, else ends the program with a message.
 [[noreturn]] void give_up();
 
-// The value of an operation that nothing but the end of memory can make fail.
+// The value of an operation that fails only if memory runs out.
 template <class T>
 [[nodiscard]] T value_or_give_up(Result<T> result) {
     if (!result) give_up();
     return std::move(*result);
 }
 
-// Where other errors than the end of memory have an answer of their own.
+// For operations whose other errors are handled separately.
 template <class T>
 void give_up_without_memory(const Result<T>& result) {
     if (!result && result.error().code == ErrorCode::out_of_memory) give_up();
 }
 
 // As executor.parallel_for within an operation: an allocation that fails in a body, on whichever thread, is thrown
-// here after all bodies have returned. Bodies that have not begun by then are left out.
+// here after all bodies have returned. Bodies that have not begun by then are skipped.
 template <class Body>
 void recoverable_for(Executor& executor, std::size_t count, std::size_t grain, Body&& body) {
     std::atomic<bool> failed{false};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Few changes of a long sorted list.
+// Applies a few changes to a long sorted list.
 #pragma once
 #include <algorithm>
 #include <atomic>
@@ -24,7 +24,7 @@ template <class T, class Key, class IsBefore>
     return static_cast<std::size_t>(std::lower_bound(first, last, key, is_before) - values.begin());
 }
 
-// Takes values out of lists and puts others in, by places. What is between two changes is moved as one.
+// Removes and inserts values of lists by position. The elements between two changes are moved in one block.
 class ListEdits {
   public:
     void begin() {
@@ -33,7 +33,7 @@ class ListEdits {
         begin_ = 0;
         shift_ = 0;
     }
-    // In the order of places in the list before; what is added before a place comes before what is removed there.
+    // In the order of positions in the old list; insertions before a position precede a removal there.
     void remove(std::size_t place) {
         stretches_.push_back({begin_, place, shift_});
         begin_ = place + 1;
@@ -45,7 +45,7 @@ class ListEdits {
         begin_ = before;
         ++shift_;
     }
-    // Does it to a list. places() of what is added are to be written then.
+    // Applies the changes to a list. The caller then writes the inserted elements at places().
     template <class T>
     void apply(Vector<T>& list) const {
         if (stretches_.empty()) return;
@@ -53,7 +53,8 @@ class ListEdits {
                           new_size = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(size) + shift_);
         if (new_size > size) list.resize(new_size);
         const auto at = [&](std::size_t i) { return list.begin() + static_cast<std::ptrdiff_t>(i); };
-        // To the left from the left, to the right from the right: no stretch is written over before it has moved.
+        // Moves blocks leftward from the left and rightward from the right, so that none is overwritten before it has
+        // moved.
         for (const Stretch& s : stretches_)
             if (s.shift < 0) std::move(at(s.begin), at(s.end), at(s.begin) + s.shift);
         if (shift_ < 0) std::move(at(begin_), at(size), at(begin_) + shift_);
@@ -76,12 +77,12 @@ class ListEdits {
     std::ptrdiff_t shift_ = 0;
 };
 
-// A sorted list, which is brought up to date when someone asks for it: noting a change costs the same however long it
-// is. One thread changes it, any may ask between changes.
+// A sorted list that is updated lazily, when it is read: recording a change takes constant time. One thread changes it;
+// any thread may read between changes.
 template <class T, class IsBefore>
 class LazySortedList {
   public:
-    // No value is added that is in the list, none is removed that is not.
+    // Requires that added values are not in the list, and that removed ones are.
     void note(std::span<const T> added, std::span<const T> removed) {
         if (added.empty() && removed.empty()) return;
         for (const T& value : removed) edits_.push_back({value, edits_.size(), false});
@@ -97,7 +98,7 @@ class LazySortedList {
         }
         return values_;
     }
-    // For who changes it.
+    // For the thread that changes it.
     [[nodiscard]] Vector<T>& values() {
         (void)get();
         return values_;

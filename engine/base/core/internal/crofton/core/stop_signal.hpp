@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A StopCallback that many threads may ask.
+// A StopCallback that many threads may poll.
 #pragma once
 #include <atomic>
 #include <chrono>
@@ -16,7 +16,7 @@ class StopSignal {
     StopSignal(const StopSignal&) = delete;
     StopSignal& operator=(const StopSignal&) = delete;
 
-    // Whether the caller wants to stop. May ask it.
+    // Whether the caller wants to stop. May call the callback.
     [[nodiscard]] bool is_raised(double share_done) {
         if (should_stop_ == nullptr) return false;
         if (raised_.load(std::memory_order_relaxed)) return true;
@@ -28,7 +28,7 @@ class StopSignal {
         asking_.clear(std::memory_order_release);
         return raised_.load(std::memory_order_relaxed);
     }
-    // Whether it has said so. Asks nothing.
+    // Whether the callback has asked to stop. Does not call it.
     [[nodiscard]] bool was_raised() const { return raised_.load(std::memory_order_relaxed); }
 
   private:

@@ -44,7 +44,7 @@ inline void closest_of_segments(const glm::dvec3& p, const glm::dvec3& q, const 
 }
 
 // The foot of p's perpendicular on the triangle, where it falls inside. The normal of a sliver whose sides meet at a
-// small angle θ errs by 2^-52/θ of itself. What of that lies along a side is taken out: it would tilt the plane over
+// small angle θ errs by 2^-52/θ of itself. Its part along a side is removed, because it would tilt the plane over
 // the whole length. Across, the sliver is only θ times as wide.
 inline bool foot_inside(const glm::dvec3& p, const Triangle& t, glm::dvec3& foot) {
     const glm::dvec3 side = t[1] - t[0], across = glm::cross(side, t[2] - t[0]);

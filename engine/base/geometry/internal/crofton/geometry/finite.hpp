@@ -15,14 +15,14 @@ inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-// Whether a body may be there. False for NaN.
+// Whether the coordinates are in range for a body. False for NaN.
 [[nodiscard]] inline bool is_in_range(const glm::dvec3& v) {
     return std::abs(v.x) <= kMaxCoordinate && std::abs(v.y) <= kMaxCoordinate && std::abs(v.z) <= kMaxCoordinate;
 }
 [[nodiscard]] inline bool is_in_range(const Aabb& box) {
     return is_in_range(box.min) && is_in_range(box.max);
 }
-// Whether a sphere is one that answers are given for.
+// Whether queries accept the sphere.
 [[nodiscard]] inline bool is_in_range(const Sphere& sphere) {
     return is_in_range(sphere.center) && sphere.radius >= 0.0 && sphere.radius <= kMaxCoordinate;
 }

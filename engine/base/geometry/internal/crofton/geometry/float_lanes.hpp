@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Four floats side by side, of which three are the components of a vector or the axes of a box; the last is anything.
+// Four floats side by side, of which three are the components of a vector or the axes of a box; the last is arbitrary.
 // The compilers' own vectors, or arrays where there are none: operations are single roundings on every machine.
 #pragma once
 #include <bit>

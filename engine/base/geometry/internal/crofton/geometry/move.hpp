@@ -17,7 +17,7 @@ struct Move {
         result.center += by;
         return result;
     }
-    // Where `point` is in the coordinates before the move.
+    // Returns `point` in the coordinates before the move.
     [[nodiscard]] glm::dvec3 back(const glm::dvec3& point) const { return point - by; }
     // Bounds the L1 norm of the error of comparing back(point), instead of `point`, with boxes before the move, instead
     // of moved boxes. On each axis the center's sum rounds by 2^-53 (most + |by|), and the point's difference by 2^-53

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Directions across a direction.
+// Directions perpendicular to a direction.
 #pragma once
 #include <array>
 #include <cmath>
@@ -19,7 +19,7 @@ namespace crofton {
             glm::dvec3(b, sign + axis.y * axis.y * a, -axis.y)};
 }
 
-// Returns a unit vector across u, which is neither 0 nor so small or large that its products leave the numbers.
+// Returns a unit vector perpendicular to u. Requires that products of u's components neither vanish nor overflow.
 [[nodiscard]] inline glm::dvec3 unit_across(const glm::dvec3& u) {
     const glm::dvec3 size = glm::abs(u);
     const int least = size.x <= size.y && size.x <= size.z ? 0 : (size.y <= size.z ? 1 : 2);

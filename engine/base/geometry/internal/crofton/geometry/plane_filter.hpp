@@ -24,7 +24,7 @@ struct PlaneFilter {
         magnitude = glm::abs(left) + glm::abs(right);
     }
 
-    // orientation(a, b, c, d) where it is certain and not 0, else kUnknownSign.
+    // Returns orientation(a, b, c, d) if it is certain and not 0, else kUnknownSign.
     [[nodiscard]] int side(const glm::dvec3& d) const {
         const glm::dvec3 w = d - origin;
         const double above = glm::dot(normal, w);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The check of a transform, without a word on what is wrong.
+// A fast check of a transform, without an error message.
 #pragma once
 #include <crofton/geometry/transform.hpp>
 #include <glm/common.hpp>

@@ -39,7 +39,7 @@ HWY_INLINE V permute_32(V v, std::uint32_t digits) {
 }
 #endif
 
-// The lanes of `mask` first, in their order; what follows them is unspecified. Lanes of 32 or 64 bits.
+// The lanes of `mask` first, in their order; the remaining lanes are unspecified. Lanes of 32 or 64 bits.
 template <class D>
 HWY_INLINE hn::Vec<D> compress([[maybe_unused]] D d, hn::Vec<D> v, hn::Mask<D> mask) {
     constexpr std::size_t kLaneBytes = sizeof(hn::TFromD<D>);
@@ -67,8 +67,8 @@ HWY_INLINE hn::Vec<D> compress([[maybe_unused]] D d, hn::Vec<D> v, hn::Mask<D> m
     return hn::Compress(v, mask);
 }
 
-// Stores the lanes of `mask` one behind the other, and what compress() leaves behind them up to a whole vector: `to`
-// needs room for that. Returns how many lanes there are.
+// Stores the lanes of `mask` contiguously, followed by unspecified lanes up to a whole vector: `to` needs room for
+// that. Returns the number of lanes in `mask`.
 template <class D>
 HWY_INLINE std::size_t compress_store(D d, hn::Vec<D> v, hn::Mask<D> mask, hn::TFromD<D>* to) {
     hn::StoreU(compress(d, v, mask), d, to);
