@@ -321,7 +321,7 @@ TEST_SUITE("cull/moving_boxes") {
                             plain.moving.unstage(entries[done]);
                         }
                     };
-                    stage(0, next.size());
+                    if (frame % 11 != 8) stage(0, next.size());
                     for (int more = 0; more < 3 && frame % 5 == 2; ++more) {  // some twice, at any place
                         const std::size_t first = any();
                         stage(first, std::min<std::size_t>(random.index(200), next.size() - first));
@@ -337,16 +337,19 @@ TEST_SUITE("cull/moving_boxes") {
                         plain.moving.unstage_all();
                         continue;
                     }
-                    if (frame % 11 == 7) {
-                        const auto last = static_cast<std::uint32_t>(next.size() - 1);
-                        for (Crowd* crowd : {&told, &plain}) crowd->items.pop_back();
+                    // Many go and come back, also where nothing is staged between.
+                    const bool all_are_staged = next.size() == count;
+                    while (frame % 11 == 7 && next.size() + 40 > count) {
                         next.pop_back();
-                        if (frame % 2) {
-                            for (Crowd* crowd : {&told, &plain}) crowd->items.push_back(last);
-                            next.push_back(told.boxes.back());
+                        for (Crowd* crowd : {&told, &plain}) crowd->items.pop_back();
+                    }
+                    while (frame % 11 == 9 && !all_are_staged && next.size() < count) {
+                        const auto entry = static_cast<std::uint32_t>(next.size());
+                        next.push_back(oracle::random_box(random, next[0].center, 20.0));
+                        for (Crowd* crowd : {&told, &plain}) {
+                            crowd->items.push_back(entry);
+                            crowd->moving.unstage(entry);
                         }
-                        told.moving.unstage(last);
-                        plain.moving.unstage(last);
                     }
                     told.boxes = next;
                     plain.boxes = next;

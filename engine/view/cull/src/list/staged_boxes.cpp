@@ -86,7 +86,7 @@ void MovingBoxes::finish_chunk(std::size_t c, std::span<const Obb> boxes) {
         for (; word; word &= word - 1)
             missing[count++] = static_cast<std::uint32_t>(64 * w) + static_cast<std::uint32_t>(std::countr_zero(word));
     }
-    for (std::size_t block = begin / 16; block < std::min(end / 16, shapes_.size()); ++block) {
+    for (std::size_t block = begin / 16; block < std::min((end + 15) / 16, shapes_.size()); ++block) {
         const bool is_staged = (staged_[block / 4] >> (block % 4 * 16) & 0xffff) == 0xffff;
         shapes_[block] = is_staged && (shapes_[block] & kShapesStay) != 0 ? kShapesWritten : 0;
     }
