@@ -6,6 +6,8 @@
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/core/executor.hpp>
 #include <crofton/cull/bound_set.hpp>
+#include <crofton/cull/list_layout.hpp>
+#include <cstring>
 #include <error_of.hpp>
 #include <limits>
 #include <map>
@@ -274,6 +276,104 @@ TEST_SUITE("cull/moving_boxes") {
                 CHECK(staged > 4 * count);
                 if (count > 1) CHECK(refused > 0);
             }
+    }
+
+    TEST_CASE("boxes that move without turning give the same list to the bit, whatever else changes meanwhile") {
+        std::int64_t targets = hwy::SupportedTargets();  // one after the other
+        for (const double offset : {0.0, 1e6})
+            for (unsigned seed = 0; seed < 12; ++seed) {
+                CAPTURE(seed);
+                hwy::SetSupportedTargetsForTest(0);
+                if (targets == 0) targets = hwy::SupportedTargets();
+                hwy::SetSupportedTargetsForTest(targets & -targets);
+                targets &= targets - 1;
+                const std::size_t count = seed % 3 == 0 ? 5000 : 700;
+                Crowd told(oracle::random_crowd(count, offset, 50 + seed), 1),
+                    plain(oracle::random_crowd(count, offset, 50 + seed), 1);
+                oracle::NearMisses random(51 + seed, offset);
+                const auto any = [&] { return random.index(static_cast<unsigned>(told.boxes.size())); };
+                const auto same_bytes = [](const auto& a, const auto& b) {
+                    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
+                };
+                for (int frame = 0; frame < 60; ++frame) {
+                    std::vector<Obb> next = told.boxes;
+                    const bool stays = frame % 13 == 5;
+                    const auto change = [&](Obb box) {
+                        if (stays) return box;
+                        box.center += random.number(0.01, 0.2) * random.direction();
+                        if (random.index(frame % 4 ? 4000 : 30) == 0)
+                            box = oracle::random_box(random, box.center, 20.0);
+                        if (random.index(20000) == 0) box.center *= 1e6;           // out of its chunk's frame
+                        if (random.index(20000) == 0) box.half_extents.x = 2e18f;  // valid, but not for the kernel
+                        return box;
+                    };
+                    const auto stage = [&](std::size_t first, std::size_t size) {
+                        std::vector<std::uint32_t> entries(size);
+                        std::vector<Obb> boxes(size);
+                        for (std::size_t k = 0; k < size; ++k) {
+                            entries[k] = static_cast<std::uint32_t>(first + k);
+                            next[first + k] = boxes[k] =
+                                change(random.index(3) ? told.boxes[first + k] : next[first + k]);
+                        }
+                        for (std::size_t done = 0; done < size; ++done) {
+                            const auto rest = std::span(entries).subspan(done);
+                            const std::size_t taken =
+                                told.moving.stage(rest, &boxes[done], sizeof(Obb), told.boxes.data());
+                            REQUIRE(plain.moving.stage(rest, &boxes[done], sizeof(Obb)) == taken);
+                            done += taken;
+                            if (done == size) break;
+                            told.moving.unstage(entries[done]);
+                            plain.moving.unstage(entries[done]);
+                        }
+                    };
+                    if (frame % 11 != 8) stage(0, next.size());
+                    for (int more = 0; more < 3 && frame % 5 == 2; ++more) {  // some twice, at any place
+                        const std::size_t first = any();
+                        stage(first, std::min<std::size_t>(random.index(200), next.size() - first));
+                    }
+                    for (int n = 0; n < 3 && frame % 7 == 3; ++n) {
+                        const std::size_t at = any();
+                        next[at] = oracle::random_box(random, next[at].center, 5.0);
+                        told.moving.unstage(at);
+                        plain.moving.unstage(at);
+                    }
+                    if (stays && frame % 2 == 0) {  // nothing has moved
+                        told.moving.unstage_all();
+                        plain.moving.unstage_all();
+                        continue;
+                    }
+                    // Many go and come back, also where nothing is staged between.
+                    const bool all_are_staged = next.size() == count;
+                    while (frame % 11 == 7 && next.size() + 40 > count) {
+                        next.pop_back();
+                        for (Crowd* crowd : {&told, &plain}) crowd->items.pop_back();
+                    }
+                    while (frame % 11 == 9 && !all_are_staged && next.size() < count) {
+                        const auto entry = static_cast<std::uint32_t>(next.size());
+                        next.push_back(oracle::random_box(random, next[0].center, 20.0));
+                        for (Crowd* crowd : {&told, &plain}) {
+                            crowd->items.push_back(entry);
+                            crowd->moving.unstage(entry);
+                        }
+                    }
+                    told.boxes = next;
+                    plain.boxes = next;
+                    told.moving.finish(told.items, told.boxes);
+                    plain.moving.finish(plain.items, plain.boxes);
+                    REQUIRE(same_bytes(told.moving.set().rows(), plain.moving.set().rows()));
+                    REQUIRE(same_bytes(told.moving.set().records(), plain.moving.set().records()));
+                    for (std::size_t c = 0; c < told.moving.set().chunks().size(); ++c) {
+                        const auto &a = told.moving.set().chunks()[c], &b = plain.moving.set().chunks()[c];
+                        REQUIRE(std::equal(a.origin, a.origin + 3, b.origin));
+                        REQUIRE(std::equal(a.extent, a.extent + 3, b.extent));
+                        REQUIRE(a.quantum == b.quantum);
+                        REQUIRE(a.l1_radius == b.l1_radius);
+                        REQUIRE(a.largest_radius == b.largest_radius);
+                        REQUIRE(a.out_of_frame == b.out_of_frame);
+                    }
+                }
+            }
+        hwy::SetSupportedTargetsForTest(0);
     }
 
     TEST_CASE("an unstaged box leaves nothing behind") {

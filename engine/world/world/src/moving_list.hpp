@@ -44,7 +44,7 @@ class MovingList {
     // Likewise many, whose boxes are `stride` bytes apart, up to the first that is not certainly valid. Returns how
     // many.
     std::size_t stage(std::span<const std::uint32_t> entries, const Obb* first, std::size_t stride, std::uint32_t now) {
-        const std::size_t count = moving_boxes_.stage(entries, first, stride);
+        const std::size_t count = moving_boxes_.stage(entries, first, stride, boxes_.data());
         keep(entries.first(count), first, stride, now);
         return count;
     }

@@ -116,15 +116,19 @@ class MoverTable {
     // its shape. Returns how many.
     std::size_t list_entries(const Strided<ObjectHandle>& handles, const Strided<Obb>& boxes, std::size_t begin,
                              std::size_t end, std::uint32_t* entries) const {
+        // In registers: what is written might be them.
+        const Key* const keys = keys_.data();
+        const std::size_t key_count = keys_.size();
         std::size_t count = 0;
-        for (; begin + count < end; ++count) {
-            const ObjectHandle handle = handles[begin + count];
-            if (handle.index >= keys_.size()) break;
-            const Key& key = keys_[handle.index];
+        for (std::size_t i = begin; i < end; ++i, ++count) {
+            const ObjectHandle handle = handles[i];
+            if (handle.index >= key_count) break;
+            const Key key = keys[handle.index];
             if (key.generation != handle.generation || key.entry == kNoIndex) break;
-            if (key.entry < least_.size() && !covers(boxes[begin + count], least_[key.entry])) break;
             entries[count] = key.entry;
         }
+        for (std::size_t n = 0; !least_.empty() && n < count; ++n)
+            if (entries[n] < least_.size() && !covers(boxes[begin + n], least_[entries[n]])) return n;
         return count;
     }
     // `least_half_extents` as ObjectShapes tells them. kNoIndex: the object is no such box.

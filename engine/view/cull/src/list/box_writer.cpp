@@ -4,6 +4,7 @@
 #include <hwy/cache_control.h>
 #include <algorithm>
 #include <cmath>
+#include <crofton/core/consecutive.hpp>
 #include <cstring>
 #include <limits>
 
@@ -36,9 +37,15 @@ struct Boxes {
     alignas(64) double origin[3][kSixteen];
     alignas(64) float per_quantum[kSixteen];
 
-    HWY_INLINE void put(std::size_t lane, const unsigned char* box) {
+    HWY_INLINE void put_center(std::size_t lane, const unsigned char* box) {
         for (std::size_t j = 0; j < 3; ++j) std::memcpy(&center[j][lane], box + 8 * j, 8);
+    }
+    HWY_INLINE void put_shape(std::size_t lane, const unsigned char* box) {
         for (std::size_t q = 0; q < 3; ++q) std::memcpy(shape[q][lane], box + kShapeBytes + 16 * q, 16);
+    }
+    HWY_INLINE void put(std::size_t lane, const unsigned char* box) {
+        put_center(lane, box);
+        put_shape(lane, box);
     }
     HWY_INLINE void put_frame(std::size_t lane, const ListChunk& chunk) {
         for (std::size_t j = 0; j < 3; ++j) {
@@ -69,6 +76,9 @@ struct Written {
     HWY_INLINE void copy_record(std::size_t lane, BoxRecord& to) const {
         for (std::size_t q = 0; q < 2; ++q)
             std::memcpy(reinterpret_cast<unsigned char*>(&to) + 16 * q, record[q][lane], 16);
+    }
+    HWY_INLINE void copy_center(std::size_t lane, BoxRecord& to) const {
+        for (std::size_t j = 0; j < 3; ++j) to.center[j] = offset[j][lane];
     }
     HWY_INLINE void grow(std::size_t lane, ListChunk& chunk) const {
         for (std::size_t j = 0; j < 3; ++j) chunk.extent[j] = std::max(chunk.extent[j], std::abs(at[j][lane]));
@@ -168,6 +178,54 @@ HWY_INLINE void write(const Boxes& boxes, Written& to) {
         to.usable |= bits_of(usable) << l;
         to.bounded |= bits_of(bounded) << l;
     }
+}
+
+// Whether sixteen boxes have the same axes and half extents, bit for bit.
+HWY_INLINE bool have_same_shapes(const unsigned char* a, std::size_t stride, const unsigned char* b) {
+    const hn::CappedTag<std::uint64_t, 2> d;
+    const auto load = [&](const unsigned char* from)
+                          HWY_ATTR { return hn::LoadU(d, reinterpret_cast<const std::uint64_t*>(from)); };
+    for (std::size_t lane = 0; lane < kSixteen;) {
+        auto differing = hn::Zero(d);
+        for (const std::size_t end = lane + 4; lane < end; ++lane, a += stride, b += kBoxBytes)
+            for (std::size_t byte = kShapeBytes; byte < kBoxBytes; byte += 8 * hn::Lanes(d))
+                differing = hn::Or(differing, hn::Xor(load(a + byte), load(b + byte)));
+        if (!hn::AllTrue(d, hn::Eq(differing, hn::Zero(d)))) return false;
+    }
+    return true;
+}
+
+// As write(), of boxes with the shapes that the block of rows was written for, but for what shapes alone decide. False
+// if one of the old rows is empty, or one of the new is to be.
+HWY_INLINE bool write_moved(const Boxes& boxes, const RowBlock& block, Written& to) {
+    const DF d;
+    const DI di;
+    const DU du;
+    write_offsets(boxes, to);
+    bool good = true;
+    for (std::size_t l = 0; l < kSixteen; l += hn::Lanes(d)) {
+        const VF offset[3] = {hn::Load(d, to.offset[0] + l), hn::Load(d, to.offset[1] + l),
+                              hn::Load(d, to.offset[2] + l)};
+        const VF sum = hn::Add(hn::Add(hn::Abs(offset[0]), hn::Abs(offset[1])), hn::Abs(offset[2]));
+        const VF l1_radius = hn::Mul(sum, hn::Set(d, 1.0f + 0x1p-20f)),
+                 per_quantum = hn::Load(d, boxes.per_quantum + l);
+        const VU zr = hn::LoadU(du, block.zr + l), radius = hn::ShiftRight<16>(zr);
+        auto bounded = hn::And(hn::Le(l1_radius, hn::Set(d, static_cast<float>(kFarthest))),
+                               hn::RebindMask(d, hn::Ne(radius, hn::Set(du, kUnboundedRadius))));
+        VI whole[3];
+        for (std::size_t j = 0; j < 3; ++j) {
+            const VF at = hn::Mul(offset[j], per_quantum);
+            bounded = hn::And(bounded, hn::Le(hn::Abs(at), hn::Set(d, static_cast<float>(kMaxRowCoordinate))));
+            whole[j] = hn::NearestInt(at);
+            hn::Store(whole[j], di, to.at[j] + l);
+        }
+        hn::Store(pairs_of(whole[0], whole[1]), du, to.xy + l);
+        hn::Store(pairs_of(whole[2], hn::BitCast(di, radius)), du, to.zr + l);
+        hn::Store(radius, du, to.radius + l);
+        hn::Store(l1_radius, d, to.l1_radius + l);
+        good = good && hn::AllTrue(d, bounded);
+    }
+    return good;
 }
 
 // The largest of sixteen numbers.
@@ -287,9 +345,11 @@ std::size_t write_items(const unsigned char* all_boxes, const std::uint32_t* ite
 struct Group {
     const std::uint32_t* items;
     std::size_t count;
+    bool in_order;  // one after the other
 
     [[nodiscard]] std::uint32_t item(std::size_t lane) const { return items[std::min(lane, count - 1)]; }
     [[nodiscard]] bool in_one_chunk() const {
+        if (in_order) return items[0] / kChunk == items[count - 1] / kChunk;
         std::uint32_t differing = 0;
         for (std::size_t lane = 1; lane < count; ++lane) differing |= items[lane] ^ items[0];
         return differing < kChunk;
@@ -297,6 +357,7 @@ struct Group {
     // Whether the items are all those of a block of rows, in order.
     [[nodiscard]] bool is_block() const {
         if (count < kSixteen || items[0] % kSixteen != 0) return false;
+        if (in_order) return true;
         std::uint32_t differing = 0;
         for (std::uint32_t lane = 0; lane < kSixteen; ++lane) differing |= items[lane] ^ (items[0] + lane);
         return differing == 0;
@@ -304,16 +365,27 @@ struct Group {
 };
 
 std::size_t write_strided(const unsigned char* all_boxes, std::size_t stride, const std::uint32_t* items,
-                          std::size_t count, ListChunk* chunks, RowBlock* rows, BoxRecord* records) {
+                          std::size_t count, ListChunk* chunks, RowBlock* rows, BoxRecord* records,
+                          const unsigned char* before, std::uint8_t* shapes) {
     constexpr std::size_t kMixed = ~std::size_t{0};
     Boxes boxes[2];
     std::size_t framed[2] = {kMixed, kMixed};  // the chunk whose frame all lanes have
-    const auto group_at = [&](std::size_t first) { return Group{items + first, std::min(kSixteen, count - first)}; };
+    bool has_shapes[2];
+    const bool in_order = are_consecutive({items, count});
+    const auto group_at = [&](std::size_t first) {
+        return Group{items + first, std::min(kSixteen, count - first), in_order};
+    };
     const auto put = [&](std::size_t turn, std::size_t first) HWY_ATTR {
         const Group group = group_at(first);
         const std::size_t frame = group.in_one_chunk() ? group.items[0] / kChunk : kMixed;
-        for (std::size_t lane = 0; lane < kSixteen; ++lane)
-            boxes[turn].put(lane, all_boxes + stride * (first + std::min(lane, group.count - 1)));
+        has_shapes[turn] = before == nullptr || (shapes[group.items[0] / kSixteen] & kShapesWritten) == 0;
+        has_shapes[turn] |= group.count < kSixteen;
+        if (has_shapes[turn])
+            for (std::size_t lane = 0; lane < kSixteen; ++lane)
+                boxes[turn].put(lane, all_boxes + stride * (first + std::min(lane, group.count - 1)));
+        else
+            for (std::size_t lane = 0; lane < kSixteen; ++lane)
+                boxes[turn].put_center(lane, all_boxes + stride * (first + lane));
         if (frame == kMixed)
             for (std::size_t lane = 0; lane < kSixteen; ++lane)
                 boxes[turn].put_frame(lane, chunks[group.item(lane) / kChunk]);
@@ -328,24 +400,42 @@ std::size_t write_strided(const unsigned char* all_boxes, std::size_t stride, co
         if (extremes_of != kMixed) extremes.grow(chunks[extremes_of]);
         extremes = {};
     };
+    const auto include = [&](std::uint32_t item) HWY_ATTR {
+        if (item / kChunk != extremes_of) {
+            flush();
+            extremes_of = item / kChunk;
+        }
+        extremes.include(written);
+        RowBlock& block = rows[item / kSixteen];
+        std::memcpy(block.xy, written.xy, sizeof block.xy);
+        std::memcpy(block.zr, written.zr, sizeof block.zr);
+    };
     std::size_t done = 0;
     if (count > 0) put(0, 0);
     for (std::size_t first = 0, turn = 0; first < count; first += kSixteen, turn ^= 1) {
         if (first + kSixteen < count) put(turn ^ 1, first + kSixteen);
-        write(boxes[turn], written);
         const Group group = group_at(first);
+        const bool same_shapes =
+            before != nullptr && group.is_block() &&
+            have_same_shapes(all_boxes + stride * first, stride, before + kBoxBytes * group.items[0]);
+        if (same_shapes && (shapes[group.items[0] / kSixteen] & kShapesWritten) != 0 &&
+            write_moved(boxes[turn], rows[group.items[0] / kSixteen], written)) {
+            include(group.items[0]);
+            for (std::size_t lane = 0; lane < kSixteen; ++lane)
+                written.copy_center(lane, records[group.items[0] + lane]);
+            shapes[group.items[0] / kSixteen] = kShapesWritten | kShapesStay;
+            done += kSixteen;
+            continue;
+        }
+        for (std::size_t lane = 0; !has_shapes[turn] && lane < kSixteen; ++lane)
+            boxes[turn].put_shape(lane, all_boxes + stride * (first + lane));
+        write(boxes[turn], written);
         const std::uint32_t unusable = ~written.usable & ((1u << group.count) - 1);
         if (unusable == 0 && group.is_block()) {
             const std::uint32_t item = group.items[0];
-            if (item / kChunk != extremes_of) {
-                flush();
-                extremes_of = item / kChunk;
-            }
-            extremes.include(written);
-            RowBlock& block = rows[item / kSixteen];
-            std::memcpy(block.xy, written.xy, sizeof block.xy);
-            std::memcpy(block.zr, written.zr, sizeof block.zr);
+            include(item);
             for (std::size_t lane = 0; lane < kSixteen; ++lane) written.copy_record(lane, records[item + lane]);
+            if (before != nullptr) shapes[item / kSixteen] = same_shapes ? kShapesWritten | kShapesStay : 0;
             done += kSixteen;
             continue;
         }
@@ -358,6 +448,7 @@ std::size_t write_strided(const unsigned char* all_boxes, std::size_t stride, co
             block.zr[item % kSixteen] = written.zr[lane];
             written.copy_record(lane, records[item]);
             written.grow(lane, chunk);
+            if (before != nullptr) shapes[item / kSixteen] = 0;
         }
         done += usable;
         if (unusable) break;
@@ -390,9 +481,11 @@ std::size_t write_boxes(const Obb* boxes, const std::uint32_t* items, std::size_
 }
 
 std::size_t write_strided_boxes(const Obb* first, std::size_t stride, const std::uint32_t* items, std::size_t count,
-                                ListChunk* chunks, RowBlock* rows, BoxRecord* records) {
+                                ListChunk* chunks, RowBlock* rows, BoxRecord* records, const Obb* before,
+                                std::uint8_t* shapes) {
     return HWY_DYNAMIC_DISPATCH(write_strided)(reinterpret_cast<const unsigned char*>(first), stride, items, count,
-                                               chunks, rows, records);
+                                               chunks, rows, records, reinterpret_cast<const unsigned char*>(before),
+                                               shapes);
 }
 
 }  // namespace crofton::cull

@@ -19,6 +19,7 @@ Result<void> MovingBoxes::update(const boxtree::BoxTree& tree, std::span<const I
         if (!known.is_detached(item))
             return fail(ErrorCode::out_of_range, item, "moving boxes: the item has not been detached from the tree");
     unstage_all();
+    shapes_.clear();
     const std::size_t valid = sets_[1 - now_].update(boxes, executor);
     if (valid < boxes.size()) return validate(boxes[valid], items[valid]);
     now_ = 1 - now_;

@@ -39,14 +39,17 @@ void MovingBoxes::begin_staging() {
         for (std::int32_t& extent : next.chunks_[c].extent) extent = 0;
     }
     staged_.assign((size() + 63) / 64, 0);
+    for (std::uint8_t& shapes : shapes_) shapes &= kShapesWritten;
 }
 
-std::size_t MovingBoxes::stage(std::span<const std::uint32_t> entries, const Obb* first, std::size_t stride) {
+std::size_t MovingBoxes::stage(std::span<const std::uint32_t> entries, const Obb* first, std::size_t stride,
+                               const Obb* before) {
     if (entries.empty()) return 0;
     if (staged_.empty()) begin_staging();
     BoxSet& next = sets_[1 - now_];
+    shapes_.resize(before != nullptr ? (size() + 15) / 16 : 0, 0);
     const std::size_t count = write_strided_boxes(first, stride, entries.data(), entries.size(), next.chunks_.data(),
-                                                  next.rows_.data(), next.records_.data());
+                                                  next.rows_.data(), next.records_.data(), before, shapes_.data());
     mark(staged_, entries.first(count));
     return count;
 }
@@ -57,13 +60,14 @@ void MovingBoxes::finish(std::span<const ItemId> items, std::span<const Obb> box
     BoxSet& next = sets_[1 - now_];
     const std::size_t laid_out = next.chunks_.size();
     staged_.resize((boxes.size() + 63) / 64, 0);
+    if (!shapes_.empty()) shapes_.resize((boxes.size() + 15) / 16, 0);
     next.resize(boxes.size());
     executor.parallel_for(next.chunks_.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
         for (std::size_t c = begin; c < end; ++c)
             if (c < laid_out)
                 finish_chunk(c, boxes);
             else
-                next.assign_chunk(c, boxes);
+                assign_chunk(c, boxes);
     });
     staged_.clear();
     now_ = 1 - now_;
@@ -82,6 +86,10 @@ void MovingBoxes::finish_chunk(std::size_t c, std::span<const Obb> boxes) {
         for (; word; word &= word - 1)
             missing[count++] = static_cast<std::uint32_t>(64 * w) + static_cast<std::uint32_t>(std::countr_zero(word));
     }
+    for (std::size_t block = begin / 16; block < std::min((end + 15) / 16, shapes_.size()); ++block) {
+        const bool is_staged = (staged_[block / 4] >> (block % 4 * 16) & 0xffff) == 0xffff;
+        shapes_[block] = is_staged && (shapes_[block] & kShapesStay) != 0 ? kShapesWritten : 0;
+    }
     ListChunk& chunk = next.chunks_[c];
     if (4 * count > end - begin) {
         (void)next.fill_chunk(c, boxes);
@@ -97,7 +105,15 @@ void MovingBoxes::finish_chunk(std::size_t c, std::span<const Obb> boxes) {
         for (std::size_t i = begin; i < end && chunk.largest_radius == kUnboundedRadius; ++i)
             chunk.out_of_frame += next.rows_[i / 16].zr[i % 16] >> 16 == kUnboundedRadius;
     }
-    if (BoxSet::wants_new_frame(chunk)) next.assign_chunk(c, boxes);
+    if (BoxSet::wants_new_frame(chunk)) assign_chunk(c, boxes);
+}
+
+// In a new frame, so that nothing of the other set's can be kept the next time.
+void MovingBoxes::assign_chunk(std::size_t c, std::span<const Obb> boxes) {
+    sets_[1 - now_].assign_chunk(c, boxes);
+    const std::size_t begin = std::min(c * kChunk / 16, shapes_.size()), end = (c + 1) * kChunk / 16;
+    std::fill(shapes_.begin() + static_cast<std::ptrdiff_t>(begin),
+              shapes_.begin() + static_cast<std::ptrdiff_t>(std::min(end, shapes_.size())), std::uint8_t{0});
 }
 
 }  // namespace crofton::cull

@@ -133,8 +133,10 @@ class MovingBoxes {
     //
     // The k-th box, `stride` bytes after the one before, belongs to items()[entries[k]]; of several boxes for one entry
     // the last counts. Stops at the first box that is not certainly valid, and returns the number of staged boxes.
-    // Requires entries below size().
-    std::size_t stage(std::span<const std::uint32_t> entries, const Obb* first, std::size_t stride);
+    // Requires entries below size(). `before`, if given, must be boxes() as they were at the last finish(): boxes that
+    // have moved without turning then cost less.
+    std::size_t stage(std::span<const std::uint32_t> entries, const Obb* first, std::size_t stride,
+                      const Obb* before = nullptr);
     // Discards the staged box of any entry; finish() reads its box.
     void unstage(std::size_t entry) {
         if (entry / 64 < staged_.size()) staged_[entry / 64] &= ~(std::uint64_t{1} << entry % 64);
@@ -154,11 +156,13 @@ class MovingBoxes {
   private:
     void begin_staging();
     void finish_chunk(std::size_t c, std::span<const Obb> boxes);
+    void assign_chunk(std::size_t c, std::span<const Obb> boxes);
 
     ResetOnMove<std::span<const ItemId>> items_;
     ResetOnMove<std::span<const Obb>> boxes_;
     BoxSet sets_[2];                // an update is written into the one, and counts once all of it is known to be good
     Vector<std::uint64_t> staged_;  // one bit an entry: written into that set; empty: nothing is staged
+    Vector<std::uint8_t> shapes_;   // of that set, a byte for sixteen entries (list/box_writer.hpp); may be empty
     unsigned now_ = 0;
 };
 
