@@ -107,7 +107,11 @@ Result<RegionHandle> Regions::attach(const Region& region, const glm::dvec3& ori
     attachment.first = first;
     attachment.generation = next_generation_;
     attachment.alive = true;
-    if (pages > 0) attachment.bounds = bounds_in_world(region, attachment.move);
+    if (pages > 0) {
+        attachment.bounds = bounds_in_world(region, attachment.move);
+        attachment.tree = cull::moved_tree_of(region.data()->tree, attachment.move, first);
+        attachment.common_layers = region.data()->common_layers;
+    }
     renew(next_generation_);
     attached_.push_back(slot);
     object_count_ += region.object_count();

@@ -1,12 +1,33 @@
 // SPDX-License-Identifier: MIT
 // Queries of trees whose boxes are stored relative to an origin: one view, many trees.
 #pragma once
+#include <crofton/boxtree/layout.hpp>
 #include <crofton/core/memory.hpp>
+#include <crofton/cull/answer_list.hpp>
 #include <crofton/cull/cull.hpp>
 #include <crofton/geometry/move.hpp>
 #include <span>
 
 namespace crofton::cull {
+
+// What a view reads of a tree that does not change, and where its boxes are. In one place, so that no pointer need be
+// followed before the tree's nodes can be prefetched.
+struct MovedTree {
+    const boxtree::Node* nodes = nullptr;
+    const boxtree::Leaf* leaves = nullptr;
+    const boxtree::LeafRange* ranges = nullptr;
+    const std::uint8_t* leaf_counts = nullptr;
+    const boxtree::ItemId* slot_items = nullptr;
+    const boxtree::Axes* axes = nullptr;
+    const Obb* boxes = nullptr;
+    std::uint32_t item_count = 0;  // ids are below it
+    std::uint32_t node_count = 0, leaf_count = 0;
+    std::uint32_t first_id = 0;               // added to ids in answers
+    double root_origin[3] = {0.0, 0.0, 0.0};  // of the root node
+    float root_l1_radius = 0.0f;
+    Move move;
+};
+[[nodiscard]] MovedTree moved_tree_of(const boxtree::BoxTree& tree, const Move& move, std::uint32_t first_id);
 
 class MovedTreesQuery {
   public:
@@ -16,15 +37,31 @@ class MovedTreesQuery {
     // Begins with a view, which must live until the last question.
     void start(const View& view);
 
-    static constexpr std::uint32_t kAllPlanes = ~std::uint32_t{0};
-    // Returns the planes that the box is not certainly inside of: bit i is plane i. 0: the view contains the box.
-    // kAllPlanes, if the view is not one that filters can take.
+    // Returns the planes that a box along the world's axes is not certainly inside of: bit i is plane i. 0: the view
+    // contains the box. All, if the view is not one that filters can take.
     [[nodiscard]] std::uint32_t planes_that_may_cut(const Obb& box) const;
 
-    // As find_visible() of a tree, with each box moved: exact for the moved boxes. Requires that all of them are inside
-    // of the planes that `planes` leaves out, and options without limits.
-    void find_visible(const boxtree::BoxTree& tree, const Move& move, std::uint32_t planes, VisibleSet& visible,
-                      const CullOptions& options = {});
+    // A tree, and the planes that its boxes are to be tested against: they are inside of all others.
+    struct Asked {
+        const MovedTree* tree = nullptr;
+        std::uint32_t planes = 0;
+    };
+    static constexpr std::size_t kMost = 64;  // trees at once
+
+    // Appends what is inside, and what straddles; exact for the moved boxes. In the trees' order, not sorted. Returns
+    // how many are inside.
+    std::size_t find_visible(std::span<const Asked> trees, CullMode mode, AnswerList<std::uint32_t>& inside,
+                             AnswerList<std::uint32_t>& straddling);
+    // The same, for list(). The trees must live until then.
+    void find_visible(std::span<const Asked> trees, CullMode mode);
+    // Appends what the last find_visible() without lists has found of a tree, in order of ids. `shown` has a bit for
+    // each item that may be listed; empty: all may. Returns how many are inside.
+    std::size_t list(std::size_t tree, std::span<const std::uint64_t> shown, AnswerList<std::uint32_t>& ids,
+                     AnswerList<Verdict>& verdicts);
+    // Appends all ids of a tree.
+    static void list_all(const MovedTree& tree, AnswerList<std::uint32_t>& ids);
+
+    [[nodiscard]] const Statistics& statistics() const;  // since start()
 
   private:
     struct State;
