@@ -13,61 +13,21 @@
 
 namespace crofton::world {
 
-namespace {
-
-// Regions that a ray meets, of which the nearest comes first: most rays end in one of the first.
-class RegionsAlong {
-  public:
-    [[nodiscard]] bool is_full() const { return count_ == kMost; }
-    void add(boxtree::ItemId item, double t) {
-        std::size_t place = count_++;
-        for (; place > 0 && met_[place - 1].t > t; --place) met_[place] = met_[place - 1];
-        met_[place] = {t, item};
-    }
-    // Visits them, the nearest first, as long as they begin before the end; visit_region(item) returns where it is now.
-    template <class Visit>
-    void visit(double end, Visit visit_region) {
-        for (std::size_t i = 0; i < count_ && met_[i].t <= end; ++i) end = visit_region(met_[i].item);
-        count_ = 0;
-    }
-
-  private:
-    static constexpr std::size_t kMost = 32;
-    struct Met {
-        double t;
-        boxtree::ItemId item;
-    };
-    Met met_[kMost];
-    std::size_t count_ = 0;
-};
-
-}  // namespace
-
 void Regions::visit_along(const Ray& ray, std::uint32_t layers, collide::RayVisitor visit) const {
     if (tree_.item_count() == 0) return;
-    Ray rest = ray;
-    const auto visit_region = [&](boxtree::ItemId item) {
-        const Attachment& region = attachments_[slot_of_item_[item]];
-        if (!region.alive) return rest.max_t;
-        collide::visit_along(
-            rest, region.data().tree, region.move,
-            [&](boxtree::ItemId object, double t) {
-                if (region.is_shown(object)) rest.max_t = visit(region.first + object, t);
-                return rest.max_t;
-            },
-            layers);
-        return rest.max_t;
-    };
-    RegionsAlong met;
+    double end = ray.max_t;
     collide::visit_along(
         ray, tree_,
-        [&](boxtree::ItemId item, double t) {
-            if (met.is_full()) met.visit(rest.max_t, visit_region);
-            if (t <= rest.max_t) met.add(item, t);
-            return rest.max_t;
+        [&](boxtree::ItemId item) {
+            const Attachment& region = attachments_[slot_of_item_[item]];
+            return region.alive ? collide::MovedTree{&region.data().tree, &region.move} : collide::MovedTree{};
+        },
+        [&](boxtree::ItemId item, boxtree::ItemId object, double t) {
+            const Attachment& region = attachments_[slot_of_item_[item]];
+            if (region.is_shown(object)) end = visit(region.first + object, t);
+            return end;
         },
         layers);
-    met.visit(rest.max_t, visit_region);
 }
 
 void Regions::visit_near(const Aabb& bounds, double distance, std::uint32_t layers, collide::NearVisitor visit) const {
