@@ -75,7 +75,7 @@ void rays(const Town& town, int frames) {
     }
     double found = 0.0, found_single = 0.0;
     const FrameTimes times = compare(
-        frames / 10 + 1,
+        frames,
         [&](int) {
             found_single = 0.0;
             for (const Ray& ray : rays)

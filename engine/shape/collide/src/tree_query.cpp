@@ -28,8 +28,8 @@ constexpr float kFar = std::numeric_limits<float>::max();
 template <class Step>
 class Stack {
   public:
-    explicit Stack(const boxtree::Structure& tree) {
-        const std::size_t needed = (std::size_t{tree.height()} + 1) * kWidth;  // items below the leaves as well
+    explicit Stack(unsigned height) {
+        const std::size_t needed = (std::size_t{height} + 1) * kWidth;  // items below the leaves as well
         if (needed > few_.size()) {
             many_.resize(needed);
             steps_ = many_.data();
@@ -55,10 +55,10 @@ void for_each_lane(std::uint32_t lanes, Visit visit) {
 
 // The items of some of a leaf's lanes.
 template <class Visit>
-void for_each_item(const boxtree::Structure& tree, boxtree::LeafId leaf, std::uint32_t lanes, std::uint32_t layers,
+void for_each_item(const boxtree::TreeArrays& tree, boxtree::LeafId leaf, std::uint32_t lanes, std::uint32_t layers,
                    Visit visit) {
     for_each_lane(lanes, [&](unsigned lane) {
-        if (tree.leaves()[leaf].layers[lane] & layers) visit(tree.slot_items()[std::size_t{leaf} * kWidth + lane]);
+        if (tree.leaves[leaf].layers[lane] & layers) visit(tree.slot_items[std::size_t{leaf} * kWidth + lane]);
     });
 }
 
@@ -207,23 +207,23 @@ void visit_near(const Aabb& bounds, double distance, const boxtree::BoxTree& tre
                 std::uint32_t layers) {
     if (!is_finite(bounds.min) || !is_finite(bounds.max)) return;
     Aabb near = grown(bounds, distance);
-    const boxtree::Structure& structure = tree.structure();
-    Stack<std::uint32_t> stack(structure);
+    const boxtree::TreeArrays arrays = boxtree::arrays_of(tree);
+    Stack<std::uint32_t> stack(arrays.height);
     stack.push(0);
     while (!stack.is_empty() && distance >= 0.0) {
         const std::uint32_t child = stack.pop();
         if (child & boxtree::kLeafBit) {
             const boxtree::LeafId id = child & ~boxtree::kLeafBit;
-            const boxtree::Leaf& leaf = structure.leaves()[id];
+            const boxtree::Leaf& leaf = arrays.leaves[id];
             const double before = distance;
-            for_each_item(structure, id, lanes_within(leaf, box_for(leaf, near)), layers, [&](boxtree::ItemId item) {
+            for_each_item(arrays, id, lanes_within(leaf, box_for(leaf, near)), layers, [&](boxtree::ItemId item) {
                 if (distance >= 0.0) distance = std::min(distance, visit(item));
             });
             if (distance < before) near = grown(bounds, distance);
             continue;
         }
-        const boxtree::Node& node = structure.nodes()[child];
-        for_each_lane(lanes_within(node, box_for(node, structure.axes_of(node), near)), [&](unsigned lane) {
+        const boxtree::Node& node = arrays.nodes[child];
+        for_each_lane(lanes_within(node, box_for(node, arrays.axes[node.axes], near)), [&](unsigned lane) {
             if (node.layers_any[lane] & layers) stack.push(node.child[lane]);
         });
     }
@@ -256,10 +256,10 @@ namespace {
 // visit_leaf(leaf, lanes, entries, push): of the lanes that the ray may meet; push(entry, item) has the item visited in
 // its turn, by visit_item(item).
 template <class VisitLeaf, class VisitItem>
-void walk_along(const boxtree::Structure& structure, const Traveller& traveller, const double& max_t,
-                std::uint32_t layers, VisitLeaf visit_leaf, VisitItem visit_item) {
+void walk_along(const boxtree::TreeArrays& tree, const Traveller& traveller, const double& max_t, std::uint32_t layers,
+                VisitLeaf visit_leaf, VisitItem visit_item) {
     float limit = traveller.distance(max_t);
-    Stack<RayStep> stack(structure);
+    Stack<RayStep> stack(tree.height);
     stack.push({0.0f, 0});
     while (!stack.is_empty()) {
         const RayStep step = stack.pop();
@@ -277,7 +277,7 @@ void walk_along(const boxtree::Structure& structure, const Traveller& traveller,
             if (id & kItemBit) {
                 visit_item(id & ~kItemBit);
             } else {
-                const boxtree::Leaf& leaf = structure.leaves()[id];
+                const boxtree::Leaf& leaf = tree.leaves[id];
                 const std::uint32_t lanes = lanes_along(leaf, traveller.seen_from(leaf, limit), entry.data());
                 visit_leaf(id, lanes, entry, push);
             }
@@ -285,8 +285,8 @@ void walk_along(const boxtree::Structure& structure, const Traveller& traveller,
             limit = traveller.distance(max_t);
             continue;
         }
-        const boxtree::Node& node = structure.nodes()[step.child];
-        for_each_lane(lanes_along(node, traveller.seen_from(node, structure.axes_of(node), limit), entry.data()),
+        const boxtree::Node& node = tree.nodes[step.child];
+        for_each_lane(lanes_along(node, traveller.seen_from(node, tree.axes[node.axes], limit), entry.data()),
                       [&](unsigned lane) {
                           if ((node.layers_any[lane] & layers) != 0) push(entry[lane], node.child[lane]);
                       });
@@ -296,13 +296,12 @@ void walk_along(const boxtree::Structure& structure, const Traveller& traveller,
 // The traveller sees the tree's own boxes; box_of(item) is the item's box where the ray meets it. visit(item, t)
 // returns how far along the ray others are of interest, which `rest` tells as well.
 template <class BoxOf, class Visit>
-void visit_along(Ray& rest, const Traveller& traveller, const boxtree::BoxTree& tree, const BoxOf& box_of, Visit visit,
-                 std::uint32_t layers) {
-    const boxtree::Structure& structure = tree.structure();
+void visit_along(Ray& rest, const Traveller& traveller, const boxtree::TreeArrays& tree, const BoxOf& box_of,
+                 Visit visit, std::uint32_t layers) {
     walk_along(
-        structure, traveller, rest.max_t, layers,
+        tree, traveller, rest.max_t, layers,
         [&](boxtree::LeafId id, std::uint32_t lanes, const auto&, const auto&) {
-            for_each_item(structure, id, lanes, layers, [&](boxtree::ItemId item) {
+            for_each_item(tree, id, lanes, layers, [&](boxtree::ItemId item) {
                 if (const auto t = mesh::entry_of(rest, box_of(item))) rest.max_t = visit(item, *t);
             });
         },
@@ -314,9 +313,10 @@ void visit_along(Ray& rest, const Traveller& traveller, const boxtree::BoxTree& 
 void visit_along(const Ray& ray, const boxtree::BoxTree& tree, RayVisitor visit, std::uint32_t layers) {
     if (!validate(ray)) return;
     Ray rest = ray;
-    const std::span<const Obb> boxes = tree.boxes();
+    const boxtree::TreeArrays arrays = boxtree::arrays_of(tree);
     visit_along(
-        rest, Traveller(ray), tree, [&](boxtree::ItemId item) -> const Obb& { return boxes[item]; }, visit, layers);
+        rest, Traveller(ray), arrays, [&](boxtree::ItemId item) -> const Obb& { return arrays.boxes[item]; }, visit,
+        layers);
 }
 
 void visit_along(const Ray& ray, const boxtree::BoxTree& trees, FunctionRef<MovedTree(boxtree::ItemId)> tree_of,
@@ -324,23 +324,21 @@ void visit_along(const Ray& ray, const boxtree::BoxTree& trees, FunctionRef<Move
     if (!validate(ray)) return;
     Ray rest = ray;
     const Traveller traveller(ray);
-    const boxtree::Structure& structure = trees.structure();
+    const boxtree::TreeArrays upper = boxtree::arrays_of(trees);
     walk_along(
-        structure, traveller, rest.max_t, layers,
+        upper, traveller, rest.max_t, layers,
         [&](boxtree::LeafId id, std::uint32_t lanes, const auto& entry, const auto& push) {
             for_each_lane(lanes, [&](unsigned lane) {
-                if (structure.leaves()[id].layers[lane] & layers)
-                    push(entry[lane],
-                         structure.slot_items()[std::size_t{id} * kWidth + lane] | boxtree::kLeafBit | kItemBit);
+                if (upper.leaves[id].layers[lane] & layers)
+                    push(entry[lane], upper.slot_items[std::size_t{id} * kWidth + lane] | boxtree::kLeafBit | kItemBit);
             });
         },
         [&](boxtree::ItemId item) {
             const auto [tree, move] = tree_of(item);
             if (tree == nullptr) return;
-            const std::span<const Obb> boxes = tree->boxes();
             visit_along(
                 rest, traveller.from(move->back(ray.origin), move->rounding(ray.origin)), *tree,
-                [&, by = move](boxtree::ItemId in_tree) { return (*by)(boxes[in_tree]); },
+                [&, boxes = tree->boxes, by = move](boxtree::ItemId in_tree) { return (*by)(boxes[in_tree]); },
                 [&](boxtree::ItemId in_tree, double t) { return visit(item, in_tree, t); }, layers);
         });
 }

@@ -20,7 +20,7 @@ void Regions::visit_along(const Ray& ray, std::uint32_t layers, collide::RayVisi
         ray, tree_,
         [&](boxtree::ItemId item) {
             const Attachment& region = attachments_[slot_of_item_[item]];
-            return region.alive ? collide::MovedTree{&region.data().tree, &region.move} : collide::MovedTree{};
+            return region.alive ? collide::MovedTree{&region.tree.arrays, &region.move} : collide::MovedTree{};
         },
         [&](boxtree::ItemId item, boxtree::ItemId object, double t) {
             const Attachment& region = attachments_[slot_of_item_[item]];
@@ -123,7 +123,7 @@ void Regions::find_visible(const RegionQuery& query, WholeView& result) const {
         batch.parts.push_back({region, is_whole});
         if (is_whole) continue;
         batch.trees.push_back({&region->tree, planes});
-        batch.items += region->tree.item_count;
+        batch.items += region->tree.arrays.item_count;
         if (batch.trees.size() == cull::MovedTreesQuery::kMost || batch.items >= kMostItems) ask();
     }
     ask();
@@ -153,7 +153,7 @@ void Regions::add_visible(const RegionQuery& query, WholeView& result) const {
 }
 
 void Regions::add_whole(const Attachment& region, bool by_tree, WholeView& result) {
-    const std::size_t count = region.tree.item_count;
+    const std::size_t count = region.tree.arrays.item_count;
     cull::MovedTreesQuery::list_all(region.tree, result.ids);
     if (!by_tree) std::fill_n(result.verdicts.extend(count), count, cull::Verdict::inside);
     result.inside_count += count;

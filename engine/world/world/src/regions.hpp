@@ -152,7 +152,7 @@ class Regions {
     Vector<std::uint32_t> slot_of_item_;  // of the tree's items
     std::uint32_t next_generation_;
     std::size_t object_count_ = 0;  // of those that are alive
-    bool wants_rebuild_ = false;
+    unsigned rebuilds_wanted_ = 0;
 };
 
 }  // namespace crofton::world

@@ -6,7 +6,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <crofton/boxtree/structure.hpp>
 #include <crofton/core/error.hpp>
 #include <crofton/cull/moved_tree.hpp>
 #include <glm/common.hpp>
@@ -29,27 +28,18 @@ T* room(Vector<T>& buffer, std::size_t size) {
 }
 
 std::size_t words_of(const MovedTree& tree) {
-    return (std::size_t{tree.item_count} + 63) / 64;
+    return (std::size_t{tree.arrays.item_count} + 63) / 64;
 }
 
 }  // namespace
 
 MovedTree moved_tree_of(const boxtree::BoxTree& tree, const Move& move, std::uint32_t first_id) {
-    const boxtree::Structure& structure = tree.structure();
     MovedTree result;
-    result.nodes = structure.nodes().data();
-    result.leaves = structure.leaves().data();
-    result.ranges = structure.leaf_ranges().data();
-    result.leaf_counts = structure.leaf_counts().data();
-    result.slot_items = structure.slot_items().data();
-    result.axes = structure.axes().data();
-    result.boxes = tree.boxes().data();
-    result.item_count = static_cast<std::uint32_t>(tree.boxes().size());
-    result.node_count = static_cast<std::uint32_t>(structure.nodes().size());
-    result.leaf_count = static_cast<std::uint32_t>(structure.leaves().size());
+    result.arrays = boxtree::arrays_of(tree);
     result.first_id = first_id;
-    std::copy_n(structure.nodes()[0].origin, 3, result.root_origin);
-    result.root_l1_radius = structure.nodes()[0].l1_radius;
+    const boxtree::Node& root = result.arrays.nodes[0];
+    result.root_l1_radius = root.l1_radius;
+    std::copy_n(root.origin, 3, result.root_origin);
     result.move = move;
     return result;
 }
@@ -149,21 +139,21 @@ MovedTreesQuery::State::Found MovedTreesQuery::State::ask(std::span<const Asked>
     for (std::size_t t = 0; t < asked.size(); ++t) {
         const MovedTree& tree = *asked[t].tree;
         bring_before_tree(t, tree);
-        inputs[t] = {.nodes = tree.nodes,
-                     .leaves = tree.leaves,
-                     .ranges = tree.ranges,
-                     .leaf_counts = tree.leaf_counts,
-                     .slot_items = tree.slot_items,
-                     .axes = tree.axes,
+        inputs[t] = {.nodes = tree.arrays.nodes,
+                     .leaves = tree.arrays.leaves,
+                     .ranges = tree.arrays.ranges,
+                     .leaf_counts = tree.arrays.leaf_counts,
+                     .slot_items = tree.arrays.slot_items,
+                     .axes = tree.arrays.axes,
                      .view = &views[t],
                      .exact = mode == CullMode::exact,
                      .first_id = first_ids[t]};
         planes[t] = asked[t].planes;
         // The walk meets these behind nodes and leaves, which it prefetches itself.
-        hwy::Prefetch(tree.ranges);
-        hwy::Prefetch(tree.leaf_counts);
-        items += tree.item_count;
-        blocks += std::size_t{tree.node_count} + tree.leaf_count;
+        hwy::Prefetch(tree.arrays.ranges);
+        hwy::Prefetch(tree.arrays.leaf_counts);
+        items += tree.arrays.item_count;
+        blocks += std::size_t{tree.arrays.node_count} + tree.arrays.leaf_count;
     }
     TreeKernelOutput output{};
     output.inside = inside_ids;
@@ -177,8 +167,8 @@ MovedTreesQuery::State::Found MovedTreesQuery::State::ask(std::span<const Asked>
     for (std::size_t i = 0; i < output.undecided_count; ++i) {
         const std::size_t t = undecided_trees[i];
         const MovedTree& tree = *asked[t].tree;
-        const boxtree::ItemId item = tree.slot_items[undecided[i]];
-        const Obb box = tree.move(tree.boxes[item]);
+        const boxtree::ItemId item = tree.arrays.slot_items[undecided[i]];
+        const Obb box = tree.move(tree.arrays.boxes[item]);
         const Verdict verdict = classify_usable(view->frustum, box, mode);
         if (verdict != Verdict::outside)
             add(verdict == Verdict::inside, first_ids[t] + item, inside_ids, straddling_ids, found);
@@ -199,11 +189,11 @@ MovedTreesQuery::State::Found MovedTreesQuery::State::ask_each(std::span<const A
     Found found;
     for (std::size_t t = 0; t < asked.size(); ++t) {
         const MovedTree& tree = *asked[t].tree;
-        for (boxtree::LeafId l = 0; l < tree.leaf_count; ++l)
-            for (std::uint32_t lane = 0; lane < tree.leaves[l].count; ++lane) {
-                if (!(tree.leaves[l].layers[lane] & view->layer_mask)) continue;
-                const boxtree::ItemId item = tree.slot_items[l * boxtree::kWidth + lane];
-                const Verdict verdict = classify(view->frustum, tree.move(tree.boxes[item]), mode);
+        for (boxtree::LeafId l = 0; l < tree.arrays.leaf_count; ++l)
+            for (std::uint32_t lane = 0; lane < tree.arrays.leaves[l].count; ++lane) {
+                if (!(tree.arrays.leaves[l].layers[lane] & view->layer_mask)) continue;
+                const boxtree::ItemId item = tree.arrays.slot_items[l * boxtree::kWidth + lane];
+                const Verdict verdict = classify(view->frustum, tree.move(tree.arrays.boxes[item]), mode);
                 if (verdict != Verdict::outside)
                     add(verdict == Verdict::inside, first_ids[t] + item, inside_ids, straddling_ids, found);
             }
@@ -217,7 +207,7 @@ std::size_t MovedTreesQuery::find_visible(std::span<const Asked> trees, CullMode
     std::size_t items = 0;
     for (std::size_t t = 0; t < trees.size(); ++t) {
         first_ids[t] = trees[t].tree->first_id;
-        items += trees[t].tree->item_count;
+        items += trees[t].tree->arrays.item_count;
     }
     const State::Found found =
         state_->ask(trees, mode, first_ids, inside.room(items + kRoomBehind), straddling.room(items + kRoomBehind));
@@ -249,7 +239,7 @@ void MovedTreesQuery::find_visible(std::span<const Asked> trees, CullMode mode) 
 }
 
 void MovedTreesQuery::list_all(const MovedTree& tree, AnswerList<std::uint32_t>& ids) {
-    const std::uint32_t first = tree.first_id, count = tree.item_count;
+    const std::uint32_t first = tree.first_id, count = tree.arrays.item_count;
     std::uint32_t* const to = ids.extend(count);
     for (std::uint32_t i = 0; i < count; ++i) to[i] = first + i;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A ray at trees whose boxes are stored relative to an origin.
 #pragma once
+#include <crofton/boxtree/tree_arrays.hpp>
 #include <crofton/collide/broadphase.hpp>
 #include <crofton/geometry/move.hpp>
 
@@ -8,7 +9,7 @@ namespace crofton::collide {
 
 // A tree, and where its boxes are.
 struct MovedTree {
-    const boxtree::BoxTree* tree = nullptr;  // nullptr: none
+    const boxtree::TreeArrays* tree = nullptr;  // nullptr: none
     const Move* move = nullptr;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Queries of trees whose boxes are stored relative to an origin: one view, many trees.
 #pragma once
-#include <crofton/boxtree/layout.hpp>
+#include <crofton/boxtree/tree_arrays.hpp>
 #include <crofton/core/memory.hpp>
 #include <crofton/cull/answer_list.hpp>
 #include <crofton/cull/cull.hpp>
@@ -10,21 +10,12 @@
 
 namespace crofton::cull {
 
-// What a view reads of a tree that does not change, and where its boxes are. In one place, so that no pointer need be
-// followed before the tree's nodes can be prefetched.
+// A tree, and where its boxes are.
 struct MovedTree {
-    const boxtree::Node* nodes = nullptr;
-    const boxtree::Leaf* leaves = nullptr;
-    const boxtree::LeafRange* ranges = nullptr;
-    const std::uint8_t* leaf_counts = nullptr;
-    const boxtree::ItemId* slot_items = nullptr;
-    const boxtree::Axes* axes = nullptr;
-    const Obb* boxes = nullptr;
-    std::uint32_t item_count = 0;  // ids are below it
-    std::uint32_t node_count = 0, leaf_count = 0;
+    boxtree::TreeArrays arrays;
     std::uint32_t first_id = 0;               // added to ids in answers
-    double root_origin[3] = {0.0, 0.0, 0.0};  // of the root node
-    float root_l1_radius = 0.0f;
+    float root_l1_radius = 0.0f;              // of the root node, with
+    double root_origin[3] = {0.0, 0.0, 0.0};  // its origin
     Move move;
 };
 [[nodiscard]] MovedTree moved_tree_of(const boxtree::BoxTree& tree, const Move& move, std::uint32_t first_id);
