@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <crofton/core/recovery.hpp>
+#include <crofton/world/region_box.hpp>
 #include <glm/common.hpp>
 
 #include "require_ok.hpp"
@@ -27,6 +28,12 @@ double rounding_at(const glm::dvec3& t, const glm::dvec3& c, double max_origin) 
 }
 
 }  // namespace
+
+Obb region_box(const Obb& box, const glm::dvec3& translation, double max_origin) {
+    Obb wider = box;
+    wider.half_extents = rounded_up(glm::dvec3(box.half_extents), rounding_at(translation, box.center, max_origin));
+    return wider;
+}
 
 RegionSolids::RegionSolids() : world_({.pairs = false}, 1) {}
 
@@ -80,7 +87,7 @@ Result<void> RegionSolids::place(double max_origin, Vector<Obb>& boxes, Vector<s
         if (!hangs && !s.object_shapes.is_grown(added.object)) continue;
         const glm::dvec3 at = hangs ? s.scene.world(s.scene.node_of(object.instance)).translation
                                     : s.object_shapes.given(added.object).box.center;
-        box.half_extents = rounded_up(glm::dvec3(box.half_extents), rounding_at(at, box.center, max_origin));
+        box = region_box(box, at, max_origin);
         if (auto valid = validate(box, added.item); !valid) return valid;
     }
     return {};
