@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <crofton/core/recovery.hpp>
+#include <crofton/scene/transformed_box.hpp>
 #include <crofton/world/region_box.hpp>
 #include <glm/common.hpp>
 
@@ -60,6 +61,16 @@ Result<void> RegionSolids::add(const RegionObject& object, std::uint32_t item) {
         return fail(ErrorCode::unsupported, item,
                     "region: an object's shape is infinite ground: add it to the World itself");
     const bool has_mesh = object.mesh != kNoIndex;
+    if (has_mesh && object.shape == nullptr && object.bound.kind == BoundKind::none) {
+        if (auto valid = crofton::validate(object.transform, item); !valid) return valid;
+        Added& added = added_.emplace_back();
+        added.item = item;
+        added.only_occludes = object.only_occludes;
+        added.solid.transform = object.transform;
+        added.solid.mesh = object.mesh;
+        added.solid.occludes = object.occludes;
+        return {};
+    }
     ObjectDescription description{.bound = object.bound,
                                   .shape = object.shape,
                                   .layers = object.layers,
@@ -73,13 +84,33 @@ Result<void> RegionSolids::add(const RegionObject& object, std::uint32_t item) {
     return {};
 }
 
+// As Scene::update does: what has no box, or is a point, is in no layer.
+void RegionSolids::place_mesh(Added& added, Obb& box, std::uint32_t& layers) const {
+    const scene::Scene& scene = world_.state_->scene;
+    const auto placed = scene::transformed_box(added.solid.transform, scene.mesh_box(meshes_[added.solid.mesh].index),
+                                               scene::SceneOptions().criterion);
+    box = placed ? *placed : Obb();
+    if (!placed || maps_to_point(added.solid.transform)) layers = 0;
+    added.solid.has_transform = true;
+    added.solid.occluding_layers = layers;
+    if (added.only_occludes) layers = 0;
+}
+
 Result<void> RegionSolids::place(double max_origin, Vector<Obb>& boxes, Vector<std::uint32_t>& layers,
                                  Vector<RegionData::Item>& items) {
     World::State& s = *world_.state_;
     require_ok(s.apply_scene(serial_executor()));
-    for (const Added& added : added_) {
+    for (Added& added : added_) {
+        Obb& box = boxes[added.item];
+        if (added.object == kNoIndex) {
+            place_mesh(added, box, layers[added.item]);
+            items[added.item].radius = 0.0;
+            box = region_box(box, added.solid.transform.translation, max_origin);
+            if (auto valid = validate(box, added.item); !valid) return valid;
+            continue;
+        }
         const Object& object = s.table.objects[added.object];
-        Obb& box = boxes[added.item] = s.index.box(added.object);
+        box = s.index.box(added.object);
         items[added.item].kind = object.kind;
         items[added.item].radius = object.radius;
         const bool hangs = object.instance != kNoIndex;
@@ -110,9 +141,14 @@ void RegionSolids::finish(RegionData& data, std::size_t item_count, Executor& ex
     data.solid_of_item.assign(item_count, kNoIndex);
     data.solids.reserve(added_.size());
     for (const Added& added : added_) {
-        const Object& object = s.table.objects[added.object];
         data.solid_of_item[added.item] = static_cast<std::uint32_t>(data.solids.size());
-        RegionData::Solid& solid = data.solids.emplace_back();
+        RegionData::Solid& solid = data.solids.emplace_back(added.solid);
+        if (added.object == kNoIndex) {
+            if (!solid.occludes || data.meshes[solid.mesh].occluders.empty()) solid.occluding_layers = 0;
+            if (solid.occluding_layers != 0) data.occluding.push_back(added.item);
+            continue;
+        }
+        const Object& object = s.table.objects[added.object];
         solid.has_transform = object.instance != kNoIndex;
         if (solid.has_transform) solid.transform = s.scene.world(s.scene.node_of(object.instance));
         if (added.has_mesh) {

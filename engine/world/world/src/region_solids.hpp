@@ -8,7 +8,8 @@
 
 namespace crofton::world {
 
-// Adds such objects to a World of its own, so that they become what World::add makes of them, and then takes them out.
+// Adds meshes, and objects with shapes, to a World of its own, so that they become what World::add makes of them, and
+// then takes them out. Objects with a mesh alone are the most; they are made here, as World::add would.
 class RegionSolids {
   public:
     RegionSolids();
@@ -26,9 +27,12 @@ class RegionSolids {
 
   private:
     struct Added {
-        std::uint32_t item = 0, object = 0;
-        bool has_mesh = false;
+        std::uint32_t item = 0;
+        std::uint32_t object = kNoIndex;  // in the World; kNoIndex: a mesh alone
+        bool has_mesh = false, only_occludes = false;
+        RegionData::Solid solid = {};  // of a mesh alone
     };
+    void place_mesh(Added& added, Obb& box, std::uint32_t& layers) const;
     World world_;
     Vector<MeshHandle> meshes_;
     Vector<std::uint8_t> wants_triangles_;  // by mesh
