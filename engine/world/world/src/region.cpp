@@ -47,6 +47,7 @@ Result<void> read(Strided<RegionObject> objects, const RegionOptions& options, d
         const RegionObject& object = objects[i];
         if (is_solid(object)) {
             if (!contents.solids) contents.solids.emplace();
+            if (contents.items.empty()) contents.solids->reserve(objects.size());
             if (auto added = contents.solids->add(object, static_cast<std::uint32_t>(i)); !added) return added;
         } else if (auto valid = world::validate(object.bound, i, "region: an object needs a bound, a mesh or a shape");
                    !valid) {

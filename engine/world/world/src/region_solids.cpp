@@ -66,9 +66,8 @@ Result<void> RegionSolids::add(const RegionObject& object, std::uint32_t item) {
         Added& added = added_.emplace_back();
         added.item = item;
         added.only_occludes = object.only_occludes;
-        added.solid.transform = object.transform;
-        added.solid.mesh = object.mesh;
-        added.solid.occludes = object.occludes;
+        solids_.push_back(
+            {.transform = object.transform, .has_transform = true, .mesh = object.mesh, .occludes = object.occludes});
         return {};
     }
     ObjectDescription description{.bound = object.bound,
@@ -81,18 +80,18 @@ Result<void> RegionSolids::add(const RegionObject& object, std::uint32_t item) {
     const auto added = world_.add(description);
     if (!added) return tl::unexpected(at_item(added.error(), item));
     added_.push_back({item, added->index, has_mesh});
+    solids_.emplace_back();
     return {};
 }
 
 // As Scene::update does: what has no box, or is a point, is in no layer.
-void RegionSolids::place_mesh(Added& added, Obb& box, std::uint32_t& layers) const {
+void RegionSolids::place_mesh(const Added& added, RegionData::Solid& solid, Obb& box, std::uint32_t& layers) const {
     const scene::Scene& scene = world_.state_->scene;
-    const auto placed = scene::transformed_box(added.solid.transform, scene.mesh_box(meshes_[added.solid.mesh].index),
+    const auto placed = scene::transformed_box(solid.transform, scene.mesh_box(meshes_[solid.mesh].index),
                                                scene::SceneOptions().criterion);
     box = placed ? *placed : Obb();
-    if (!placed || maps_to_point(added.solid.transform)) layers = 0;
-    added.solid.has_transform = true;
-    added.solid.occluding_layers = layers;
+    if (!placed || maps_to_point(solid.transform)) layers = 0;
+    solid.occluding_layers = layers;
     if (added.only_occludes) layers = 0;
 }
 
@@ -100,12 +99,13 @@ Result<void> RegionSolids::place(double max_origin, Vector<Obb>& boxes, Vector<s
                                  Vector<RegionData::Item>& items) {
     World::State& s = *world_.state_;
     require_ok(s.apply_scene(serial_executor()));
-    for (Added& added : added_) {
+    for (std::size_t i = 0; i < added_.size(); ++i) {
+        const Added& added = added_[i];
         Obb& box = boxes[added.item];
         if (added.object == kNoIndex) {
-            place_mesh(added, box, layers[added.item]);
+            place_mesh(added, solids_[i], box, layers[added.item]);
             items[added.item].radius = 0.0;
-            box = region_box(box, added.solid.transform.translation, max_origin);
+            box = region_box(box, solids_[i].transform.translation, max_origin);
             if (auto valid = validate(box, added.item); !valid) return valid;
             continue;
         }
@@ -139,10 +139,11 @@ void RegionSolids::finish(RegionData& data, std::size_t item_count, Executor& ex
             if (wants_triangles_[m]) data.meshes[m].shape.build(data.meshes[m].triangles, false);
     });
     data.solid_of_item.assign(item_count, kNoIndex);
-    data.solids.reserve(added_.size());
-    for (const Added& added : added_) {
-        data.solid_of_item[added.item] = static_cast<std::uint32_t>(data.solids.size());
-        RegionData::Solid& solid = data.solids.emplace_back(added.solid);
+    data.solids = std::move(solids_);
+    for (std::size_t i = 0; i < added_.size(); ++i) {
+        const Added& added = added_[i];
+        data.solid_of_item[added.item] = static_cast<std::uint32_t>(i);
+        RegionData::Solid& solid = data.solids[i];
         if (added.object == kNoIndex) {
             if (!solid.occludes || data.meshes[solid.mesh].occluders.empty()) solid.occluding_layers = 0;
             if (solid.occluding_layers != 0) data.occluding.push_back(added.item);

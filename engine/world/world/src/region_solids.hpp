@@ -14,6 +14,11 @@ class RegionSolids {
   public:
     RegionSolids();
 
+    void reserve(std::size_t objects) {
+        added_.reserve(objects);
+        solids_.reserve(objects);
+    }
+
     // Errors: as World::add_mesh and set_occluders; the item is the mesh's place.
     [[nodiscard]] Result<void> add_meshes(std::span<const RegionMesh> meshes, detail::StopSignal& stop);
     // The object at place `item`. Errors: as World::add, and of a shape without bounds.
@@ -30,13 +35,13 @@ class RegionSolids {
         std::uint32_t item = 0;
         std::uint32_t object = kNoIndex;  // in the World; kNoIndex: a mesh alone
         bool has_mesh = false, only_occludes = false;
-        RegionData::Solid solid = {};  // of a mesh alone
     };
-    void place_mesh(Added& added, Obb& box, std::uint32_t& layers) const;
+    void place_mesh(const Added& added, RegionData::Solid& solid, Obb& box, std::uint32_t& layers) const;
     World world_;
     Vector<MeshHandle> meshes_;
     Vector<std::uint8_t> wants_triangles_;  // by mesh
     Vector<Added> added_;
+    Vector<RegionData::Solid> solids_;  // of these
 };
 
 }  // namespace crofton::world
