@@ -113,12 +113,12 @@ void growth(int frames) {
     Costs first, last;
     for (std::size_t regions = 1; regions <= 100'000; regions *= 10) {
         last = costs(regions, frames);
-        if (regions == 10) first = last;
+        if (regions == 100) first = last;
         std::printf("%zu,%.0f,%zu,", regions * kObjects, last.bytes, last.seen);
         row(last);
     }
-    const auto exponent = [&](double Costs::*cost) { return std::log10(last.*cost / (first.*cost)) / 4.0; };
-    std::printf("exponent from 10^4 to 10^8,%.2f,,", exponent(&Costs::bytes));
+    const auto exponent = [&](double Costs::*cost) { return std::log10(last.*cost / (first.*cost)) / 3.0; };
+    std::printf("exponent from 10^5 to 10^8,%.2f,,", exponent(&Costs::bytes));
     row({.attach = exponent(&Costs::attach),
          .view = exponent(&Costs::view),
          .ray = exponent(&Costs::ray),
