@@ -117,7 +117,9 @@ void growth(int frames) {
         std::printf("%zu,%.0f,%zu,", regions * kObjects, last.bytes, last.seen);
         row(last);
     }
-    const auto exponent = [&](double Costs::*cost) { return std::log10(last.*cost / (first.*cost)) / 3.0; };
+    const auto exponent = [&](double Costs::*cost) {  // to two digits, without -0
+        return std::round(100.0 * std::log10(last.*cost / (first.*cost)) / 3.0) / 100.0 + 0.0;
+    };
     std::printf("exponent from 10^5 to 10^8,%.2f,,", exponent(&Costs::bytes));
     row({.attach = exponent(&Costs::attach),
          .view = exponent(&Costs::view),
