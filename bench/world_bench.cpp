@@ -9,6 +9,7 @@
 //   bench_world --bytes       bytes an object, as CSV
 //   bench_world --stacks      what an update of a thousand stacked crates costs, as shapes and as boxes
 //   bench_world --regions     a World of a thousand regions compared with one of a million objects
+//   bench_world --growth      Worlds of regions against the number of objects, as CSV
 //   --frames=N                instead of 200
 //   --target=AVX2             with this instruction set
 //   --benchmark_filter=REGEX, --benchmark_repetitions=N, --benchmark_out=FILE: as Google Benchmark's, for results.py
@@ -53,7 +54,7 @@ constexpr Row kRows[] = {
 
 struct Options {
     int frames = 200, repetitions = 1;
-    bool churn = false, changes = false, stacks = false, bytes = false, regions = false;
+    bool churn = false, changes = false, stacks = false, bytes = false, regions = false, growth = false;
     std::size_t spawns = 10'000'000, live = 20'000, part = 100;
     std::string out;
     std::regex filter{""};
@@ -75,6 +76,8 @@ bool parse(int argc, char** argv, Options& options) {
             options.bytes = true;
         else if (key == "--regions")
             options.regions = true;
+        else if (key == "--growth")
+            options.growth = true;
         else if (key == "--stacks")
             options.stacks = true;
         else if (key == "--live")
@@ -132,6 +135,11 @@ int main(int argc, char** argv) {
     if (options.bytes) {
         std::printf("# command: bench_world --bytes --target=%s\n", target);
         crofton::bench::bytes();
+        return 0;
+    }
+    if (options.growth) {
+        std::printf("# command: bench_world --growth --frames=%d --target=%s\n", options.frames, target);
+        crofton::bench::growth(options.frames);
         return 0;
     }
     if (options.regions) {

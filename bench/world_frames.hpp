@@ -80,6 +80,9 @@ void changes(int frames);
 // Worlds of regions: a table to stdout (world_regions.cpp).
 void regions(int frames);
 
+// Worlds of regions, of 10^3 to 10^8 objects: rows of a CSV to stdout (world_growth.cpp).
+void growth(int frames);
+
 // Updates of stacked crates: a table to stdout (world_stacks.cpp).
 void stacks(int frames);
 

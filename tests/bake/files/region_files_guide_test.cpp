@@ -206,6 +206,61 @@ TEST_SUITE("bake/region_files") {
         CHECK(!open_region_index(folder.path()));
     }
 
+    TEST_CASE("a region takes the tree of its file, and builds one where that is for other origins") {
+        const Town town(60);
+        const SceneRegions regions = SceneRegions::split(town.scene, 2, 2).value();
+        REQUIRE(regions.size() == 4);
+        for (std::size_t i = 0; i < regions.size(); ++i) {
+            BakeOptions options = town.options();
+            options.tree = boxtree::Orientation::oriented;
+            const Vector<std::byte> file = regions.bake(i, options).value();
+            const auto prepared = [&](double max_origin) {
+                return prepare_region(BakedScene::from_memory(file).value(), {.region = {.max_origin = max_origin}})
+                    .value();
+            };
+            const Region taken = prepared(RegionOptions().max_origin), built = prepared(2e9);
+            // prepare() itself builds along the world's axes alone.
+            CHECK(taken.bytes() > built.bytes());
+            // The boxes are those of a region that is prepared from a scene that stays.
+            const BakedScene scene = BakedScene::from_memory(file).value();
+            const Region copied = prepare_region(scene).value();
+            CHECK(copied.bytes() == built.bytes());
+            CHECK(scene.tree().item_count() == copied.object_count());
+            REQUIRE(taken.object_count() == copied.object_count());
+            World world({.pairs = false});
+            const RegionHandle a = world.attach(taken, {7.0, 0.0, 1e6}).value(),
+                               b = world.attach(copied, {7.0, 0.0, 1e6}).value();
+            world.update().value();
+            for (std::uint32_t item = 0; item < taken.object_count(); ++item) {
+                const Obb of_taken = world.box_of(world.object_in(a, item).value()).value(),
+                          of_copied = world.box_of(world.object_in(b, item).value()).value();
+                CHECK(std::memcmp(&of_taken, &of_copied, sizeof(Obb)) == 0);
+            }
+        }
+    }
+
+    TEST_CASE("each byte of a region's file that is changed is an error when the region is opened") {
+        const Town town(6);
+        const TemporaryFolder folder;
+        write_regions(town, SceneRegions::split(town.scene, 1, 1).value(), folder.path());
+        const RegionFile file = open_region_index(folder.path()).value().front();
+        const std::string path = folder.path() + "/" + file.name;
+        REQUIRE(open_region(folder.path(), file).has_value());
+        const MappedFile whole = MappedFile::open(path, {.access = FileAccess::read}).value();
+        Vector<std::byte> bytes(whole.bytes().begin(), whole.bytes().end());
+        std::size_t refused = 0, tried = 0;
+        for (std::size_t i = 0; i < bytes.size(); i += 1 + i % 5) {
+            bytes[i] ^= std::byte{16};
+            refused += !BakedScene::from_memory(bytes);
+            bytes[i] ^= std::byte{16};
+            ++tried;
+        }
+        CHECK(refused == tried);
+        CHECK(tried > 2000);
+        for (std::size_t size = 0; size < bytes.size(); size += 64)
+            CHECK(!BakedScene::from_memory(std::span<const std::byte>(bytes).first(size)));
+    }
+
     TEST_CASE("the code of docs/large_worlds.md opens a region of a folder") {
         const Town town(30);
         const TemporaryFolder written;

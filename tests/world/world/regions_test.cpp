@@ -407,68 +407,112 @@ void check_names(const TwoWorlds& worlds) {
     CHECK(worlds.single.object_count() == count);
 }
 
+struct Life {
+    Solids solids;
+    std::vector<std::vector<RegionObject>> objects;
+    std::vector<Region> regions;  // of these
+};
+
+// A random life of regions and objects. After each update ask(worlds, life) compares the Worlds.
+template <class Ask>
+void live(const glm::dvec3& far, NearMisses& random, int steps, Ask ask) {
+    TwoWorlds worlds;
+    Life life;
+    auto& [solids, objects, regions] = life;
+    solids.add_to(worlds);
+    for (const std::size_t count : {0u, 1u, 3u, 17u, 40u, 300u, 1500u}) {
+        const double place = count > 1000 ? 20.0 : 6.0;
+        objects.push_back(random_objects(random, count, place));
+        for (RegionObject& object : objects.back())
+            if (count != 17 && random.index(3) == 0) solids.change(random, object, place);
+        regions.push_back(Region::prepare(objects.back(), {.tree = count % 3 == 0 ? boxtree::Orientation::oriented
+                                                                                  : boxtree::Orientation::aligned,
+                                                           .meshes = solids.meshes})
+                              .value());
+        CHECK(regions.back().object_count() == count);
+    }
+    for (int step = 0; step < steps; ++step) {
+        const unsigned changes = random.index(4);
+        for (unsigned c = 0; c < changes; ++c) {
+            const std::size_t which = random.index(static_cast<unsigned>(regions.size()));
+            const double x = random.number(-8.0, 8.0), y = random.number(-8.0, 8.0), z = random.number(-8.0, 8.0);
+            glm::dvec3 origin = glm::dvec3(x, y, z);
+            if (random.index(2) != 0) origin = 0.5 * glm::floor(2.0 * origin);
+            const unsigned action = random.index(worlds.attached.size() > 8 ? 5 : 8);
+            if (action >= 5) worlds.attach(regions[which], objects[which], far + origin);
+            if (worlds.attached.empty()) continue;
+            auto chosen = worlds.attached.begin();
+            std::advance(chosen, random.index(static_cast<unsigned>(worlds.attached.size())));
+            if (action <= 1) {
+                worlds.detach(chosen->first);
+            } else if (action <= 3 && !chosen->second.singles.empty()) {
+                const unsigned place = random.index(static_cast<unsigned>(chosen->second.singles.size()));
+                const bool hidden = random.index(3) != 0;
+                worlds.hide(chosen->first, place, hidden);
+            }
+        }
+        for (int i = 0; i < 3; ++i) {
+            Bound bound = random_object(random, 8.0).bound;
+            bound.box.center += far;
+            if (worlds.own.size() < 40) {
+                worlds.add(bound, random.index(2) ? ~0u : 2u);
+            } else {
+                const TwoWorlds::Own object = worlds.own[random.index(40)];
+                worlds.with.set_bound(object.with, bound).value();
+                worlds.single.set_bound(object.single, bound).value();
+                worlds.boxes.set_bound(object.boxed, bound).value();
+            }
+        }
+        worlds.update();
+        ask(worlds, life);
+    }
+}
+
 }  // namespace
 
 TEST_SUITE("world/regions") {
     TEST_CASE("in a random life of regions and objects, every answer is that of a World with each object by itself") {
         for (const glm::dvec3 far :
              {glm::dvec3(0.0), glm::dvec3(1e7, -2e6, 0.25), glm::dvec3(1e7 + 0.1, 3e6 + 0.3, 0.7)}) {
-            NearMisses random(71);
-            TwoWorlds worlds;
-            const Solids solids;
-            solids.add_to(worlds);
-            std::vector<std::vector<RegionObject>> objects;
-            std::vector<Region> regions;
-            for (const std::size_t count : {0u, 1u, 3u, 17u, 40u, 300u, 1500u}) {
-                const double place = count > 1000 ? 20.0 : 6.0;
-                objects.push_back(random_objects(random, count, place));
-                for (RegionObject& object : objects.back())
-                    if (count != 17 && random.index(3) == 0) solids.change(random, object, place);
-                regions.push_back(Region::prepare(objects.back(), {.meshes = solids.meshes}).value());
-                CHECK(regions.back().object_count() == count);
-            }
             ViewResult visible;
             MultiViewResult many;
-            for (int step = 0; step < 60; ++step) {
-                const unsigned changes = random.index(4);
-                for (unsigned c = 0; c < changes; ++c) {
-                    const std::size_t which = random.index(static_cast<unsigned>(regions.size()));
-                    const double x = random.number(-8.0, 8.0), y = random.number(-8.0, 8.0),
-                                 z = random.number(-8.0, 8.0);
-                    glm::dvec3 origin = glm::dvec3(x, y, z);
-                    if (random.index(2) != 0) origin = 0.5 * glm::floor(2.0 * origin);
-                    const unsigned action = random.index(worlds.attached.size() > 8 ? 5 : 8);
-                    if (action >= 5) worlds.attach(regions[which], objects[which], far + origin);
-                    if (worlds.attached.empty()) continue;
-                    auto chosen = worlds.attached.begin();
-                    std::advance(chosen, random.index(static_cast<unsigned>(worlds.attached.size())));
-                    if (action <= 1) {
-                        worlds.detach(chosen->first);
-                    } else if (action <= 3 && !chosen->second.singles.empty()) {
-                        const unsigned place = random.index(static_cast<unsigned>(chosen->second.singles.size()));
-                        const bool hidden = random.index(3) != 0;
-                        worlds.hide(chosen->first, place, hidden);
-                    }
-                }
-                for (int i = 0; i < 3; ++i) {
-                    Bound bound = random_object(random, 8.0).bound;
-                    bound.box.center += far;
-                    if (worlds.own.size() < 40) {
-                        worlds.add(bound, random.index(2) ? ~0u : 2u);
-                    } else {
-                        const TwoWorlds::Own object = worlds.own[random.index(40)];
-                        worlds.with.set_bound(object.with, bound).value();
-                        worlds.single.set_bound(object.single, bound).value();
-                        worlds.boxes.set_bound(object.boxed, bound).value();
-                    }
-                }
-                worlds.update();
+            NearMisses random(71);
+            live(far, random, 60, [&](const TwoWorlds& worlds, const Life&) {
                 check_names(worlds);
                 check_views(worlds, random, far, visible, many);
                 for (int i = 0; i < 12; ++i) check_rays(worlds, random, far);
                 for (int i = 0; i < 3; ++i) check_shapes(worlds, random, far);
-            }
+            });
         }
+    }
+
+    TEST_CASE("threads that ask at once, while another prepares and frees regions, get the answers of single objects") {
+#ifdef __SANITIZE_THREAD__
+        constexpr int kSteps = 12;
+#else
+        constexpr int kSteps = 30;
+#endif
+        const glm::dvec3 far(1e7, -2e6, 0.25);
+        NearMisses random(77);
+        unsigned seed = 0;
+        live(far, random, kSteps, [&](const TwoWorlds& worlds, const Life& life) {
+            std::vector<std::thread> threads;
+            for (int t = 0; t < 3; ++t)
+                threads.emplace_back([&worlds, &far, own_seed = ++seed] {
+                    NearMisses own(own_seed);
+                    ViewResult visible;
+                    MultiViewResult many;
+                    check_views(worlds, own, far, visible, many);
+                    for (int i = 0; i < 4; ++i) check_rays(worlds, own, far);
+                    check_shapes(worlds, own, far);
+                });
+            threads.emplace_back([&life, which = seed % life.regions.size()] {
+                const Region copy = life.regions[which];
+                const Region region = Region::prepare(life.objects[which], {.meshes = life.solids.meshes}).value();
+                CHECK(region.object_count() == copy.object_count());
+            });
+            for (std::thread& thread : threads) thread.join();
+        });
     }
 
     TEST_CASE("specks of a millimetre, ten thousand kilometres away, are seen and hit as if each were by itself") {

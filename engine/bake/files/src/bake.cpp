@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <crofton/bake/baked_scene.hpp>
 #include <crofton/core/recovery.hpp>
+#include <crofton/world/region_box.hpp>
 
 #include <limits>
 
@@ -88,7 +89,15 @@ Result<Vector<std::byte>> bake(const scene::Scene& scene, Executor& executor, co
         for (scene::NodeId node = 0; node < scene.node_count(); ++node)
             nodes.push_back({scene.world(node), scene.parent_of(node)});
         writer.add("nodes", std::span<const NodeRecord>(nodes));
-        if (const auto added = add_tree(scene.world_boxes(), scene.layer_masks(), writer, executor, options.tree);
+        const std::span<const Obb> boxes = scene.world_boxes();
+        Vector<Obb> of_region;
+        if (options.region_max_origin > 0.0) of_region.assign(boxes.begin(), boxes.end());
+        for (scene::InstanceId i = 0; i < of_region.size(); ++i)
+            if (!scene.is_removed(i))
+                of_region[i] =
+                    world::region_box(boxes[i], scene.world(scene.node_of(i)).translation, options.region_max_origin);
+        if (const auto added =
+                add_tree(of_region.empty() ? boxes : of_region, scene.layer_masks(), writer, executor, options.tree);
             !added)
             return tl::unexpected(added.error());
         if (!options.looks.empty()) add_looks(options.looks, scene.mesh_count(), writer);

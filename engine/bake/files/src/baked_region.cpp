@@ -61,9 +61,8 @@ class Meshes {
     Vector<RegionMesh> meshes_;
 };
 
-}  // namespace
-
-Result<Region> prepare_region(const BakedScene& scene, const BakedRegionOptions& options, Executor& executor) {
+Result<Region> prepare(const BakedScene& scene, boxtree::BoxTree* tree, const BakedRegionOptions& options,
+                       Executor& executor) {
     return detail::recover([&]() -> Result<Region> {
         const std::span<const InstanceRecord> instances = scene.instances();
         const std::span<const std::uint32_t> layers = scene.tree().layer_masks();
@@ -85,8 +84,19 @@ Result<Region> prepare_region(const BakedScene& scene, const BakedRegionOptions&
         }
         RegionOptions prepared = options.region;
         prepared.meshes = meshes.all();
+        prepared.built = tree;
         return Region::prepare(objects, prepared, executor);
     });
+}
+
+}  // namespace
+
+Result<Region> prepare_region(const BakedScene& scene, const BakedRegionOptions& options, Executor& executor) {
+    return prepare(scene, nullptr, options, executor);
+}
+
+Result<Region> prepare_region(BakedScene&& scene, const BakedRegionOptions& options, Executor& executor) {
+    return prepare(scene, &scene.tree(), options, executor);
 }
 
 }  // namespace crofton::bake

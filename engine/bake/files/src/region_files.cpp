@@ -159,6 +159,7 @@ Result<Vector<std::byte>> SceneRegions::bake(std::size_t i, const BakeOptions& o
             looks.push_back(old < options.looks.size() ? options.looks[old] : MeshLook());
         BakedOccluders occluders;
         if (options.occluders != nullptr) occluders = occluders_of(*options.occluders, maps);
+        of_part.region_max_origin = RegionOptions().max_origin;
         of_part.looks = looks;
         of_part.occluders = options.occluders != nullptr ? &occluders : nullptr;
         return bake::bake(scene, serial_executor(), of_part);
@@ -227,12 +228,12 @@ Result<Region> open_region(const std::string& folder, const RegionFile& file, co
     if (!mapped) return tl::unexpected(mapped.error());
     if (mapped->bytes().size() != file.bytes)
         return fail(ErrorCode::parse, kNoItem, {path, ": is not the file that the index names: its size is another"});
-    const auto baked = BakedScene::from_memory(mapped->bytes(), executor);
+    auto baked = BakedScene::from_memory(mapped->bytes(), executor);
     if (!baked) return fail(baked.error().code, baked.error().item, {path, ": ", baked.error().message});
     if (baked->instances().size() != file.objects)
         return fail(ErrorCode::parse, kNoItem,
                     {path, ": is not the file that the index names: it has ", baked->instances().size(), " instances"});
-    return prepare_region(*baked, options, executor);
+    return prepare_region(std::move(*baked), options, executor);
 }
 
 }  // namespace crofton::bake

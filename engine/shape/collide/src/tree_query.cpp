@@ -28,8 +28,8 @@ constexpr float kFar = std::numeric_limits<float>::max();
 template <class Step>
 class Stack {
   public:
-    explicit Stack(const boxtree::Structure& tree) {
-        const std::size_t needed = std::size_t{tree.height()} * kWidth;
+    explicit Stack(unsigned height) {
+        const std::size_t needed = (std::size_t{height} + 1) * kWidth;  // items below the leaves as well
         if (needed > few_.size()) {
             many_.resize(needed);
             steps_ = many_.data();
@@ -55,10 +55,10 @@ void for_each_lane(std::uint32_t lanes, Visit visit) {
 
 // The items of some of a leaf's lanes.
 template <class Visit>
-void for_each_item(const boxtree::Structure& tree, boxtree::LeafId leaf, std::uint32_t lanes, std::uint32_t layers,
+void for_each_item(const boxtree::TreeArrays& tree, boxtree::LeafId leaf, std::uint32_t lanes, std::uint32_t layers,
                    Visit visit) {
     for_each_lane(lanes, [&](unsigned lane) {
-        if (tree.leaves()[leaf].layers[lane] & layers) visit(tree.slot_items()[std::size_t{leaf} * kWidth + lane]);
+        if (tree.leaves[leaf].layers[lane] & layers) visit(tree.slot_items[std::size_t{leaf} * kWidth + lane]);
     });
 }
 
@@ -132,14 +132,18 @@ Aabb around(const glm::dvec3& center, const glm::dvec3& half_size) {
 // moves across before it leaves the filter's range is below the filter's error bound.
 class Traveller {
   public:
-    explicit Traveller(const Ray& ray) : Traveller(ray, ray.origin, 0.0) {}
-    // From another origin, which is off by `slack` at most.
-    Traveller(const Ray& ray, const glm::dvec3& origin, double slack)
-        : origin_(origin), unit_(unit_of(ray.direction)), slack_(static_cast<float>(slack * 0x1.1p20)) {
+    explicit Traveller(const Ray& ray) : origin_(ray.origin), unit_(unit_of(ray.direction)) {
         const glm::dvec3 direction = ray.direction / unit_;
         length_ = glm::length(direction);
         speed_ = direction / length_;
         for (int k = 0; k < 3; ++k) inverse_[static_cast<std::size_t>(k)] = inverse_of(speed_[k]);
+    }
+    // The same ray from another origin, which is off by `slack` at most.
+    [[nodiscard]] Traveller from(const glm::dvec3& origin, double slack) const {
+        Traveller other = *this;
+        other.origin_ = origin;
+        other.slack_ = static_cast<float>(slack * 0x1.1p20);
+        return other;
     }
     // In the filter's distances; what it rounds is below the filter's error bound.
     [[nodiscard]] float distance(double t) const {
@@ -187,13 +191,15 @@ class Traveller {
     double unit_, length_;  // of the direction; the length in units
     glm::dvec3 speed_;
     std::array<float, 3> inverse_;
-    float slack_;
+    float slack_ = 0.0f;
 };
 
 struct RayStep {
     float entry;
     std::uint32_t child;
 };
+// Beside kLeafBit, in RayStep::child: the rest is an item.
+constexpr std::uint32_t kItemBit = 0x40000000u;
 
 }  // namespace
 
@@ -201,23 +207,23 @@ void visit_near(const Aabb& bounds, double distance, const boxtree::BoxTree& tre
                 std::uint32_t layers) {
     if (!is_finite(bounds.min) || !is_finite(bounds.max)) return;
     Aabb near = grown(bounds, distance);
-    const boxtree::Structure& structure = tree.structure();
-    Stack<std::uint32_t> stack(structure);
+    const boxtree::TreeArrays arrays = boxtree::arrays_of(tree);
+    Stack<std::uint32_t> stack(arrays.height);
     stack.push(0);
     while (!stack.is_empty() && distance >= 0.0) {
         const std::uint32_t child = stack.pop();
         if (child & boxtree::kLeafBit) {
             const boxtree::LeafId id = child & ~boxtree::kLeafBit;
-            const boxtree::Leaf& leaf = structure.leaves()[id];
+            const boxtree::Leaf& leaf = arrays.leaves[id];
             const double before = distance;
-            for_each_item(structure, id, lanes_within(leaf, box_for(leaf, near)), layers, [&](boxtree::ItemId item) {
+            for_each_item(arrays, id, lanes_within(leaf, box_for(leaf, near)), layers, [&](boxtree::ItemId item) {
                 if (distance >= 0.0) distance = std::min(distance, visit(item));
             });
             if (distance < before) near = grown(bounds, distance);
             continue;
         }
-        const boxtree::Node& node = structure.nodes()[child];
-        for_each_lane(lanes_within(node, box_for(node, structure.axes_of(node), near)), [&](unsigned lane) {
+        const boxtree::Node& node = arrays.nodes[child];
+        for_each_lane(lanes_within(node, box_for(node, arrays.axes[node.axes], near)), [&](unsigned lane) {
             if (node.layers_any[lane] & layers) stack.push(node.child[lane]);
         });
     }
@@ -246,61 +252,95 @@ void overlapping(const boxtree::BoxTree& tree, const Capsule& shape, Vector<boxt
 
 namespace {
 
-// box_of(item) is the item's box where the ray meets it; the traveller sees the tree's own.
-template <class BoxOf>
-void visit_along(const Ray& ray, const Traveller& traveller, const boxtree::BoxTree& tree, const BoxOf& box_of,
-                 RayVisitor visit, std::uint32_t layers) {
-    Ray rest = ray;
-    float limit = traveller.distance(rest.max_t);
-    const boxtree::Structure& structure = tree.structure();
-    Stack<RayStep> stack(structure);
+// Visits children nearest first, as long as they begin before `max_t`, which what is visited may lessen.
+// visit_leaf(leaf, lanes, entries, push): of the lanes that the ray may meet; push(entry, item) has the item visited in
+// its turn, by visit_item(item).
+template <class VisitLeaf, class VisitItem>
+void walk_along(const boxtree::TreeArrays& tree, const Traveller& traveller, const double& max_t, std::uint32_t layers,
+                VisitLeaf visit_leaf, VisitItem visit_item) {
+    float limit = traveller.distance(max_t);
+    Stack<RayStep> stack(tree.height);
     stack.push({0.0f, 0});
     while (!stack.is_empty()) {
         const RayStep step = stack.pop();
         if (step.entry > limit) continue;
+        const std::size_t base = stack.size();
+        const auto push = [&](float entry, std::uint32_t child) {  // the nearest goes on top
+            stack.push({});
+            std::size_t place = stack.size() - 1;
+            for (; place > base && stack[place - 1].entry < entry; --place) stack[place] = stack[place - 1];
+            stack[place] = {entry, child};
+        };
         std::array<float, kWidth> entry;
         if (step.child & boxtree::kLeafBit) {
             const boxtree::LeafId id = step.child & ~boxtree::kLeafBit;
-            const boxtree::Leaf& leaf = structure.leaves()[id];
-            const std::uint32_t lanes = lanes_along(leaf, traveller.seen_from(leaf, limit), entry.data());
-            for_each_item(structure, id, lanes, layers, [&](boxtree::ItemId item) {
-                if (const auto t = mesh::entry_of(rest, box_of(item))) rest.max_t = visit(item, *t);
-            });
-            if (!(rest.max_t >= 0.0)) return;
-            limit = traveller.distance(rest.max_t);
+            if (id & kItemBit) {
+                visit_item(id & ~kItemBit);
+            } else {
+                const boxtree::Leaf& leaf = tree.leaves[id];
+                const std::uint32_t lanes = lanes_along(leaf, traveller.seen_from(leaf, limit), entry.data());
+                visit_leaf(id, lanes, entry, push);
+            }
+            if (!(max_t >= 0.0)) return;
+            limit = traveller.distance(max_t);
             continue;
         }
-        const boxtree::Node& node = structure.nodes()[step.child];
-        const std::size_t base = stack.size();
-        for_each_lane(lanes_along(node, traveller.seen_from(node, structure.axes_of(node), limit), entry.data()),
+        const boxtree::Node& node = tree.nodes[step.child];
+        for_each_lane(lanes_along(node, traveller.seen_from(node, tree.axes[node.axes], limit), entry.data()),
                       [&](unsigned lane) {
-                          if ((node.layers_any[lane] & layers) == 0) return;
-                          // The nearest child goes on top.
-                          stack.push({});
-                          std::size_t place = stack.size() - 1;
-                          for (; place > base && stack[place - 1].entry < entry[lane]; --place)
-                              stack[place] = stack[place - 1];
-                          stack[place] = {entry[lane], node.child[lane]};
+                          if ((node.layers_any[lane] & layers) != 0) push(entry[lane], node.child[lane]);
                       });
     }
+}
+
+// The traveller sees the tree's own boxes; box_of(item) is the item's box where the ray meets it. visit(item, t)
+// returns how far along the ray others are of interest, which `rest` tells as well.
+template <class BoxOf, class Visit>
+void visit_along(Ray& rest, const Traveller& traveller, const boxtree::TreeArrays& tree, const BoxOf& box_of,
+                 Visit visit, std::uint32_t layers) {
+    walk_along(
+        tree, traveller, rest.max_t, layers,
+        [&](boxtree::LeafId id, std::uint32_t lanes, const auto&, const auto&) {
+            for_each_item(tree, id, lanes, layers, [&](boxtree::ItemId item) {
+                if (const auto t = mesh::entry_of(rest, box_of(item))) rest.max_t = visit(item, *t);
+            });
+        },
+        [](boxtree::ItemId) {});
 }
 
 }  // namespace
 
 void visit_along(const Ray& ray, const boxtree::BoxTree& tree, RayVisitor visit, std::uint32_t layers) {
     if (!validate(ray)) return;
-    const std::span<const Obb> boxes = tree.boxes();
+    Ray rest = ray;
+    const boxtree::TreeArrays arrays = boxtree::arrays_of(tree);
     visit_along(
-        ray, Traveller(ray), tree, [&](boxtree::ItemId item) -> const Obb& { return boxes[item]; }, visit, layers);
+        rest, Traveller(ray), arrays, [&](boxtree::ItemId item) -> const Obb& { return arrays.boxes[item]; }, visit,
+        layers);
 }
 
-void visit_along(const Ray& ray, const boxtree::BoxTree& tree, const Move& move, RayVisitor visit,
-                 std::uint32_t layers) {
+void visit_along(const Ray& ray, const boxtree::BoxTree& trees, FunctionRef<MovedTree(boxtree::ItemId)> tree_of,
+                 FunctionRef<double(boxtree::ItemId, boxtree::ItemId, double)> visit, std::uint32_t layers) {
     if (!validate(ray)) return;
-    const std::span<const Obb> boxes = tree.boxes();
-    visit_along(
-        ray, Traveller(ray, move.back(ray.origin), move.rounding(ray.origin)), tree,
-        [&](boxtree::ItemId item) { return move(boxes[item]); }, visit, layers);
+    Ray rest = ray;
+    const Traveller traveller(ray);
+    const boxtree::TreeArrays upper = boxtree::arrays_of(trees);
+    walk_along(
+        upper, traveller, rest.max_t, layers,
+        [&](boxtree::LeafId id, std::uint32_t lanes, const auto& entry, const auto& push) {
+            for_each_lane(lanes, [&](unsigned lane) {
+                if (upper.leaves[id].layers[lane] & layers)
+                    push(entry[lane], upper.slot_items[std::size_t{id} * kWidth + lane] | boxtree::kLeafBit | kItemBit);
+            });
+        },
+        [&](boxtree::ItemId item) {
+            const auto [tree, move] = tree_of(item);
+            if (tree == nullptr) return;
+            visit_along(
+                rest, traveller.from(move->back(ray.origin), move->rounding(ray.origin)), *tree,
+                [&, boxes = tree->boxes, by = move](boxtree::ItemId in_tree) { return (*by)(boxes[in_tree]); },
+                [&](boxtree::ItemId in_tree, double t) { return visit(item, in_tree, t); }, layers);
+        });
 }
 
 std::optional<BoxHit> raycast(const Ray& ray, const boxtree::BoxTree& tree, std::uint32_t layers) {

@@ -7,6 +7,7 @@
 #include <crofton/core/recovery.hpp>
 #include <crofton/core/stop_signal.hpp>
 #include <crofton/mesh/mesh_parts.hpp>
+#include <cstring>
 #include <glm/geometric.hpp>
 #include <optional>
 #include <utility>
@@ -46,6 +47,7 @@ Result<void> read(Strided<RegionObject> objects, const RegionOptions& options, d
         const RegionObject& object = objects[i];
         if (is_solid(object)) {
             if (!contents.solids) contents.solids.emplace();
+            if (contents.items.empty()) contents.solids->reserve(objects.size());
             if (auto added = contents.solids->add(object, static_cast<std::uint32_t>(i)); !added) return added;
         } else if (auto valid = world::validate(object.bound, i, "region: an object needs a bound, a mesh or a shape");
                    !valid) {
@@ -57,6 +59,20 @@ Result<void> read(Strided<RegionObject> objects, const RegionOptions& options, d
     }
     if (!contents.solids) return {};
     return contents.solids->place(options.max_origin, contents.boxes, contents.layers, contents.items);
+}
+
+template <class T>
+bool have_same_bits(std::span<const T> a, std::span<const T> b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
+}
+
+Result<boxtree::BoxTree> tree_over(std::span<const Obb> boxes, std::span<const std::uint32_t> layers,
+                                   const RegionOptions& options, Executor& executor) {
+    boxtree::BoxTree* const built = options.built;
+    if (built != nullptr && built->item_count() == boxes.size() && have_same_bits(built->boxes(), boxes) &&
+        have_same_bits(built->layer_masks(), layers))
+        return std::move(*built);
+    return boxtree::BoxTree::build(boxes, layers, {.orientation = options.tree}, executor);
 }
 
 }  // namespace
@@ -78,7 +94,7 @@ Result<Region> Region::prepare(Strided<RegionObject> objects, const RegionOption
         if (auto done = read(objects, options, stop, contents); !done) return tl::unexpected(done.error());
         Region region;
         if (boxes.empty()) return region;
-        auto tree = boxtree::BoxTree::build(boxes, layers, {.orientation = options.tree}, executor);
+        auto tree = tree_over(boxes, layers, options, executor);
         if (!tree) return tl::unexpected(tree.error());
         auto data = Owner<world::RegionData>::make(std::move(*tree));
         data->items = std::move(contents.items);

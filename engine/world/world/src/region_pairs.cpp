@@ -69,21 +69,26 @@ void RegionPairs::list_ended() {
 }
 
 const mesh::MeshTree* RegionPairs::tree_under(ObjectHandle object, const glm::dmat3& linear,
-                                              const TriangleMesh& triangles) {
+                                              FunctionRef<TriangleMesh()> triangles) {
     auto at = std::lower_bound(trees_.begin(), trees_.end(), object,
                                [](const OwnTree& own, ObjectHandle asked) { return own.object < asked; });
     if (at == trees_.end() || at->object != object) {
         auto built = Owner<mesh::MeshTree>::make();
-        if (!build_under(linear, triangles, *built)) built = {};
+        if (!build_under(linear, triangles(), *built)) built = {};
         at = trees_.insert(at, OwnTree{object, std::move(built)});
     }
+    at->last_use = updates_;
     return at->tree.get();
 }
 
 void RegionPairs::forget_trees(const Regions& regions) {
-    trees_.erase(
-        std::remove_if(trees_.begin(), trees_.end(), [&](const OwnTree& own) { return !regions.contains(own.object); }),
-        trees_.end());
+    constexpr std::uint64_t kKept = 256;
+    ++updates_;
+    trees_.erase(std::remove_if(trees_.begin(), trees_.end(),
+                                [&](const OwnTree& own) {
+                                    return updates_ - own.last_use > kKept || !regions.contains(own.object);
+                                }),
+                 trees_.end());
 }
 
 void RegionPairs::end(bool finds_contacts) {
@@ -202,17 +207,19 @@ void World::State::touch_in_region(std::uint32_t id, std::uint32_t other, world:
     shapes.prepare(table, index, scene, id);
     shapes.build(scene, serial_executor());
     const world::PosedTree mesh = shapes.posed_tree(table, index, scene, id);
-    mesh::MeshTree box_tree;
+    const ObjectHandle handle = regions.ref(other).object;
     world::PosedTree other_mesh{nullptr, {glm::dmat3(1.0), other_box.center}};
     if (placed.mesh != nullptr) {
         other_mesh = {&placed.mesh->tree, {*placed.linear, placed.translation}};
         if (!world::is_rotation(*placed.linear)) {
-            const ObjectHandle handle = regions.ref(other).object;
-            other_mesh.tree = region_pairs.tree_under(handle, *placed.linear, regions.triangles(other));
+            other_mesh.tree = region_pairs.tree_under(handle, *placed.linear, [&] { return regions.triangles(other); });
             other_mesh.pose.rotation = glm::dmat3(1.0);
         }
     } else if (of_region.kind != BoundKind::sphere) {
-        other_mesh = shapes.posed_box(other_box, scene, box_tree);
+        const glm::dmat3 axes(other_box.axes);
+        if (world::is_rotation(axes)) other_mesh.pose.rotation = axes;
+        other_mesh.tree = region_pairs.tree_under(handle, world::is_rotation(axes) ? glm::dmat3(1.0) : axes,
+                                                  [&] { return world::box_mesh(other_box.half_extents); });
     }
     finder.touch_trees(object, mesh, of_region, other_mesh, touch);
 }

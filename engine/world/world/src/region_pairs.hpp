@@ -43,11 +43,11 @@ class RegionPairs {
     // With all others of the World.
     void merge(std::span<const ObjectPair> pairs, std::span<const Contact> contacts);
 
-    // Returns the triangles of a region's object under a map that is no rotation, which are built once; nullptr: none
-    // is valid under it.
+    // Returns the triangles of a region's object that is a box, or a mesh under a map that is no rotation, under a map;
+    // nullptr: none is valid under it. The tree is built once and kept while updates ask for it.
     [[nodiscard]] const mesh::MeshTree* tree_under(ObjectHandle object, const glm::dmat3& linear,
-                                                   const TriangleMesh& triangles);
-    // Frees what belongs to objects whose regions are gone.
+                                                   FunctionRef<TriangleMesh()> triangles);
+    // Once an update: frees what belongs to objects whose regions are gone, and what was not asked for in a while.
     void forget_trees(const Regions& regions);
     [[nodiscard]] bool is_used() const { return !entries_.empty() || !contacts_.empty(); }
     [[nodiscard]] std::span<const ObjectPair> pairs() const { return all_pairs_; }
@@ -62,6 +62,7 @@ class RegionPairs {
     struct OwnTree {
         ObjectHandle object;
         Owner<mesh::MeshTree> tree;
+        std::uint64_t last_use = 0;  // an update
     };
     [[nodiscard]] Contact contact_of(const Entry& entry, ContactPhase phase) const;
     void list_ended();
@@ -74,7 +75,8 @@ class RegionPairs {
     Vector<ObjectPair> all_pairs_;
     Vector<Contact> all_contacts_;
     Vector<OwnTree> trees_;  // in order
-    std::size_t kept_ = 0;   // entries before it have been looked at since begin()
+    std::uint64_t updates_ = 0;
+    std::size_t kept_ = 0;  // entries before it have been looked at since begin()
 };
 
 }  // namespace crofton::world

@@ -1,73 +1,33 @@
 // SPDX-License-Identifier: MIT
 // What is asked of attached regions: first the tree of regions, then the trees of those that may answer.
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <crofton/collide/moved_tree.hpp>
 #include <crofton/geometry/finite.hpp>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <numeric>
 
 #include "region_view.hpp"
 #include "regions.hpp"
 
 namespace crofton::world {
 
-namespace {
-
-// Regions that a ray meets, of which the nearest comes first: most rays end in one of the first.
-class RegionsAlong {
-  public:
-    [[nodiscard]] bool is_full() const { return count_ == kMost; }
-    void add(boxtree::ItemId item, double t) {
-        std::size_t place = count_++;
-        for (; place > 0 && met_[place - 1].t > t; --place) met_[place] = met_[place - 1];
-        met_[place] = {t, item};
-    }
-    // Visits them, the nearest first, as long as they begin before the end; visit_region(item) returns where it is now.
-    template <class Visit>
-    void visit(double end, Visit visit_region) {
-        for (std::size_t i = 0; i < count_ && met_[i].t <= end; ++i) end = visit_region(met_[i].item);
-        count_ = 0;
-    }
-
-  private:
-    static constexpr std::size_t kMost = 32;
-    struct Met {
-        double t;
-        boxtree::ItemId item;
-    };
-    Met met_[kMost];
-    std::size_t count_ = 0;
-};
-
-}  // namespace
-
 void Regions::visit_along(const Ray& ray, std::uint32_t layers, collide::RayVisitor visit) const {
     if (tree_.item_count() == 0) return;
-    Ray rest = ray;
-    const auto visit_region = [&](boxtree::ItemId item) {
-        const Attachment& region = attachments_[slot_of_item_[item]];
-        if (!region.alive) return rest.max_t;
-        collide::visit_along(
-            rest, region.data().tree, region.move,
-            [&](boxtree::ItemId object, double t) {
-                if (region.is_shown(object)) rest.max_t = visit(region.first + object, t);
-                return rest.max_t;
-            },
-            layers);
-        return rest.max_t;
-    };
-    RegionsAlong met;
+    double end = ray.max_t;
     collide::visit_along(
         ray, tree_,
-        [&](boxtree::ItemId item, double t) {
-            if (met.is_full()) met.visit(rest.max_t, visit_region);
-            if (t <= rest.max_t) met.add(item, t);
-            return rest.max_t;
+        [&](boxtree::ItemId item) {
+            const Attachment& region = attachments_[slot_of_item_[item]];
+            return region.alive ? collide::MovedTree{&region.tree.arrays, &region.move} : collide::MovedTree{};
+        },
+        [&](boxtree::ItemId item, boxtree::ItemId object, double t) {
+            const Attachment& region = attachments_[slot_of_item_[item]];
+            if (region.is_shown(object)) end = visit(region.first + object, t);
+            return end;
         },
         layers);
-    met.visit(rest.max_t, visit_region);
 }
 
 void Regions::visit_near(const Aabb& bounds, double distance, std::uint32_t layers, collide::NearVisitor visit) const {
@@ -107,15 +67,6 @@ void WholeView::add(std::uint32_t id, cull::Verdict verdict, cull::ResultOrder o
     verdicts.add(verdict);
 }
 
-namespace {
-
-void add_moved(AnswerList<std::uint32_t>& list, std::span<const std::uint32_t> items, std::uint32_t first) {
-    std::uint32_t* const to = list.extend(items.size());
-    for (std::size_t i = 0; i < items.size(); ++i) to[i] = first + items[i];
-}
-
-}  // namespace
-
 // No object is farther from the eye, in radii, or smaller, than the limits allow: as far as the bounds tell.
 bool Regions::may_be_within(const cull::DrawLimits& limits, const Attachment& region) const {
     const auto counts = [](double limit) { return std::abs(limit) <= kMaxCoordinate; };
@@ -130,62 +81,108 @@ bool Regions::may_be_within(const cull::DrawLimits& limits, const Attachment& re
     return glm::length(gap) <= std::max(0.0, limits.max_distance_in_radii) * most;
 }
 
-void Regions::find_visible(const RegionQuery& query, WholeView& result) const {
-    cull::find_visible(tree_, query.view, result.regions, {.mode = cull::CullMode::conservative});
-    result.query.start(query.view);
-    // By their objects' indices, which are distinct.
-    result.order.clear();
+// In the order of their objects' indices, if the answer is.
+void Regions::list_seen(const RegionQuery& query, WholeView& result) const {
+    cull::find_visible(tree_, query.view, result.regions,
+                       {.mode = cull::CullMode::conservative, .order = cull::ResultOrder::tree});
+    result.seen.clear();
+    const auto add = [&](std::uint32_t slot) {
+        const Attachment& region = attachments_[slot];
+        if (query.limits != nullptr && !may_be_within(*query.limits, region)) return;
+        if (query.buffer != nullptr && !query.list_occluded && query.buffer->hides(region.bounds)) return;
+        result.seen.push_back(&region);
+    };
+    if (query.order == cull::ResultOrder::tree) {
+        for (const boxtree::ItemId item : result.regions.ids()) add(slot_of_item_[item]);
+        return;
+    }
+    result.pages.assign((page_slots_.size() + 63) / 64, 0);
     for (const boxtree::ItemId item : result.regions.ids()) {
-        const std::uint32_t slot = slot_of_item_[item];
-        result.order.push_back(std::uint64_t{attachments_[slot].first} << 32 | slot);
+        const std::uint32_t page = (attachments_[slot_of_item_[item]].first - kFirstRegionIndex) / kPage;
+        result.pages[page / 64] |= std::uint64_t{1} << page % 64;
     }
-    std::sort(result.order.begin(), result.order.end());
-    for (const std::uint64_t entry : result.order) {
-        const Attachment& region = attachments_[static_cast<std::uint32_t>(entry)];
-        if (query.limits != nullptr && !may_be_within(*query.limits, region)) continue;
-        if (query.buffer != nullptr && !query.list_occluded && query.buffer->hides(region.bounds)) continue;
-        add_visible(region, query, result);
+    for (std::size_t w = 0; w < result.pages.size(); ++w)
+        for (std::uint64_t rest = result.pages[w]; rest != 0; rest &= rest - 1)
+            add(page_slots_[64 * w + static_cast<std::size_t>(std::countr_zero(rest))]);
+}
+
+void Regions::find_visible(const RegionQuery& query, WholeView& result) const {
+    constexpr std::size_t kMostItems = std::size_t{1} << 20;  // asked at once, unless one region has more
+    result.query.start(query.view);
+    list_seen(query, result);
+    WholeView::Batch& batch = result.batch;
+    batch.clear();
+    const auto ask = [&] {
+        add_visible(query, result);
+        batch.clear();
+    };
+    for (const Attachment* const region : result.seen) {
+        const std::uint32_t planes = result.query.planes_that_may_cut(region->bounds);
+        const bool is_whole = planes == 0 && region->shown.empty() && !query.asks_each() &&
+                              (region->common_layers & query.view.layer_mask) != 0;
+        batch.parts.push_back({region, is_whole});
+        if (is_whole) continue;
+        batch.trees.push_back({&region->tree, planes});
+        batch.items += region->tree.arrays.item_count;
+        if (batch.trees.size() == cull::MovedTreesQuery::kMost || batch.items >= kMostItems) ask();
     }
+    ask();
+    result.statistics += result.query.statistics();
     result.ids.add(result.straddling.values());
 }
 
-void Regions::add_visible(const Attachment& region, const RegionQuery& query, WholeView& result) const {
-    const RegionData& data = region.data();
-    const bool asks_each = query.limits != nullptr || query.buffer != nullptr;
+void Regions::add_visible(const RegionQuery& query, WholeView& result) const {
+    const WholeView::Batch& batch = result.batch;
     const bool by_tree = query.order == cull::ResultOrder::tree;
-    const std::uint32_t planes = result.query.planes_that_may_cut(region.bounds);
-    if (planes == 0 && region.shown.empty() && (data.common_layers & query.view.layer_mask) != 0 && !asks_each) {
-        std::uint32_t* const to = result.ids.extend(data.items.size());
-        std::iota(to, to + data.items.size(), region.first);
-        if (!by_tree) std::fill_n(result.verdicts.extend(data.items.size()), data.items.size(), cull::Verdict::inside);
-        result.inside_count += data.items.size();
-        if (cull::kCountStatistics) result.statistics.accepted_whole += data.items.size();
+    // In tree order there is nothing to sort, unless single objects are looked at.
+    const bool all_together =
+        by_tree && !query.asks_each() &&
+        std::all_of(batch.parts.begin(), batch.parts.end(),
+                    [](const WholeView::Batch::Part& part) { return part.region->shown.empty(); });
+    if (all_together)
+        result.inside_count += result.query.find_visible(batch.trees, query.mode, result.ids, result.straddling);
+    else
+        result.query.find_visible(batch.trees, query.mode);
+    std::size_t tree = 0;
+    for (const WholeView::Batch::Part& part : batch.parts) {
+        if (part.is_whole)
+            add_whole(*part.region, by_tree, result);
+        else if (!all_together)
+            add_listed(*part.region, tree++, query, result);
+    }
+}
+
+void Regions::add_whole(const Attachment& region, bool by_tree, WholeView& result) {
+    const std::size_t count = region.tree.arrays.item_count;
+    cull::MovedTreesQuery::list_all(region.tree, result.ids);
+    if (!by_tree) std::fill_n(result.verdicts.extend(count), count, cull::Verdict::inside);
+    result.inside_count += count;
+    if (cull::kCountStatistics) result.statistics.accepted_whole += count;
+}
+
+// What the query has found in its tree of that number.
+void Regions::add_listed(const Attachment& region, std::size_t tree, const RegionQuery& query,
+                         WholeView& result) const {
+    if (query.order == cull::ResultOrder::ascending && !query.asks_each()) {
+        result.inside_count += result.query.list(tree, region.shown, result.ids, result.verdicts);
         return;
     }
-    const cull::CullOptions how{query.mode, asks_each ? cull::ResultOrder::ascending : query.order, nullptr,
-                                region.shown};
-    result.query.find_visible(data.tree, region.move, planes, result.found, how);
-    result.statistics += result.found.statistics();
-    const std::span<const std::uint32_t> found = result.found.ids();
-    if (!asks_each) {
-        const std::size_t inside = result.found.inside_count();
-        result.inside_count += inside;
-        add_moved(result.ids, by_tree ? found.first(inside) : found, region.first);
-        if (by_tree) add_moved(result.straddling, found.subspan(inside), region.first);
-        result.verdicts.add(result.found.verdicts());
-        return;
-    }
+    result.found.clear();
+    result.found_verdicts.clear();
+    (void)result.query.list(tree, region.shown, result.found, result.found_verdicts);
+    const std::span<const std::uint32_t> found = result.found.values();
+    const std::span<const std::uint32_t> layer_masks = region.data().tree.layer_masks();
     result.boxes.clear();
     result.kept.clear();
     result.kept_verdicts.clear();
     for (std::size_t i = 0; i < found.size(); ++i) {
-        const std::uint32_t id = region.first + found[i];
-        const Obb box = region.box(found[i]);
-        const std::uint32_t common = data.tree.layer_masks()[found[i]] & query.view.layer_mask;
+        const std::uint32_t id = found[i], item = id - region.first;
+        const Obb box = region.box(item);
+        const std::uint32_t common = layer_masks[item] & query.view.layer_mask;
         if (query.limits != nullptr && !cull::is_worth_drawing(*query.limits, box, id, common)) continue;
         result.boxes.push_back(box);
         result.kept.push_back(id);
-        result.kept_verdicts.push_back(result.found.verdicts()[i]);
+        result.kept_verdicts.push_back(result.found_verdicts.values()[i]);
     }
     if (query.buffer == nullptr) {
         for (std::size_t i = 0; i < result.kept.size(); ++i)

@@ -3,6 +3,8 @@
 
 #include <cmath>
 #include <crofton/core/recovery.hpp>
+#include <crofton/scene/transformed_box.hpp>
+#include <crofton/world/region_box.hpp>
 #include <glm/common.hpp>
 
 #include "require_ok.hpp"
@@ -27,6 +29,12 @@ double rounding_at(const glm::dvec3& t, const glm::dvec3& c, double max_origin) 
 }
 
 }  // namespace
+
+Obb region_box(const Obb& box, const glm::dvec3& translation, double max_origin) {
+    Obb wider = box;
+    wider.half_extents = rounded_up(glm::dvec3(box.half_extents), rounding_at(translation, box.center, max_origin));
+    return wider;
+}
 
 RegionSolids::RegionSolids() : world_({.pairs = false}, 1) {}
 
@@ -53,6 +61,15 @@ Result<void> RegionSolids::add(const RegionObject& object, std::uint32_t item) {
         return fail(ErrorCode::unsupported, item,
                     "region: an object's shape is infinite ground: add it to the World itself");
     const bool has_mesh = object.mesh != kNoIndex;
+    if (has_mesh && object.shape == nullptr && object.bound.kind == BoundKind::none) {
+        if (auto valid = crofton::validate(object.transform, item); !valid) return valid;
+        Added& added = added_.emplace_back();
+        added.item = item;
+        added.only_occludes = object.only_occludes;
+        solids_.push_back(
+            {.transform = object.transform, .has_transform = true, .mesh = object.mesh, .occludes = object.occludes});
+        return {};
+    }
     ObjectDescription description{.bound = object.bound,
                                   .shape = object.shape,
                                   .layers = object.layers,
@@ -63,16 +80,37 @@ Result<void> RegionSolids::add(const RegionObject& object, std::uint32_t item) {
     const auto added = world_.add(description);
     if (!added) return tl::unexpected(at_item(added.error(), item));
     added_.push_back({item, added->index, has_mesh});
+    solids_.emplace_back();
     return {};
+}
+
+// As Scene::update does: what has no box, or is a point, is in no layer.
+void RegionSolids::place_mesh(const Added& added, RegionData::Solid& solid, Obb& box, std::uint32_t& layers) const {
+    const scene::Scene& scene = world_.state_->scene;
+    const auto placed = scene::transformed_box(solid.transform, scene.mesh_box(meshes_[solid.mesh].index),
+                                               scene::SceneOptions().criterion);
+    box = placed ? *placed : Obb();
+    if (!placed || maps_to_point(solid.transform)) layers = 0;
+    solid.occluding_layers = layers;
+    if (added.only_occludes) layers = 0;
 }
 
 Result<void> RegionSolids::place(double max_origin, Vector<Obb>& boxes, Vector<std::uint32_t>& layers,
                                  Vector<RegionData::Item>& items) {
     World::State& s = *world_.state_;
     require_ok(s.apply_scene(serial_executor()));
-    for (const Added& added : added_) {
+    for (std::size_t i = 0; i < added_.size(); ++i) {
+        const Added& added = added_[i];
+        Obb& box = boxes[added.item];
+        if (added.object == kNoIndex) {
+            place_mesh(added, solids_[i], box, layers[added.item]);
+            items[added.item].radius = 0.0;
+            box = region_box(box, solids_[i].transform.translation, max_origin);
+            if (auto valid = validate(box, added.item); !valid) return valid;
+            continue;
+        }
         const Object& object = s.table.objects[added.object];
-        Obb& box = boxes[added.item] = s.index.box(added.object);
+        box = s.index.box(added.object);
         items[added.item].kind = object.kind;
         items[added.item].radius = object.radius;
         const bool hangs = object.instance != kNoIndex;
@@ -80,7 +118,7 @@ Result<void> RegionSolids::place(double max_origin, Vector<Obb>& boxes, Vector<s
         if (!hangs && !s.object_shapes.is_grown(added.object)) continue;
         const glm::dvec3 at = hangs ? s.scene.world(s.scene.node_of(object.instance)).translation
                                     : s.object_shapes.given(added.object).box.center;
-        box.half_extents = rounded_up(glm::dvec3(box.half_extents), rounding_at(at, box.center, max_origin));
+        box = region_box(box, at, max_origin);
         if (auto valid = validate(box, added.item); !valid) return valid;
     }
     return {};
@@ -101,11 +139,17 @@ void RegionSolids::finish(RegionData& data, std::size_t item_count, Executor& ex
             if (wants_triangles_[m]) data.meshes[m].shape.build(data.meshes[m].triangles, false);
     });
     data.solid_of_item.assign(item_count, kNoIndex);
-    data.solids.reserve(added_.size());
-    for (const Added& added : added_) {
+    data.solids = std::move(solids_);
+    for (std::size_t i = 0; i < added_.size(); ++i) {
+        const Added& added = added_[i];
+        data.solid_of_item[added.item] = static_cast<std::uint32_t>(i);
+        RegionData::Solid& solid = data.solids[i];
+        if (added.object == kNoIndex) {
+            if (!solid.occludes || data.meshes[solid.mesh].occluders.empty()) solid.occluding_layers = 0;
+            if (solid.occluding_layers != 0) data.occluding.push_back(added.item);
+            continue;
+        }
         const Object& object = s.table.objects[added.object];
-        data.solid_of_item[added.item] = static_cast<std::uint32_t>(data.solids.size());
-        RegionData::Solid& solid = data.solids.emplace_back();
         solid.has_transform = object.instance != kNoIndex;
         if (solid.has_transform) solid.transform = s.scene.world(s.scene.node_of(object.instance));
         if (added.has_mesh) {

@@ -8,10 +8,16 @@
 
 namespace crofton::world {
 
-// Adds such objects to a World of its own, so that they become what World::add makes of them, and then takes them out.
+// Adds meshes, and objects with shapes, to a World of its own, so that they become what World::add makes of them, and
+// then takes them out. Objects with a mesh alone are the most; they are made here, as World::add would.
 class RegionSolids {
   public:
     RegionSolids();
+
+    void reserve(std::size_t objects) {
+        added_.reserve(objects);
+        solids_.reserve(objects);
+    }
 
     // Errors: as World::add_mesh and set_occluders; the item is the mesh's place.
     [[nodiscard]] Result<void> add_meshes(std::span<const RegionMesh> meshes, detail::StopSignal& stop);
@@ -26,13 +32,16 @@ class RegionSolids {
 
   private:
     struct Added {
-        std::uint32_t item = 0, object = 0;
-        bool has_mesh = false;
+        std::uint32_t item = 0;
+        std::uint32_t object = kNoIndex;  // in the World; kNoIndex: a mesh alone
+        bool has_mesh = false, only_occludes = false;
     };
+    void place_mesh(const Added& added, RegionData::Solid& solid, Obb& box, std::uint32_t& layers) const;
     World world_;
     Vector<MeshHandle> meshes_;
     Vector<std::uint8_t> wants_triangles_;  // by mesh
     Vector<Added> added_;
+    Vector<RegionData::Solid> solids_;  // of these
 };
 
 }  // namespace crofton::world

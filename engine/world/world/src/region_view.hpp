@@ -10,26 +10,8 @@
 
 namespace crofton::world {
 
-// A list that is made anew for each view, without writing any value twice.
-template <class T>
-class AnswerList {
-  public:
-    void clear() { size_ = 0; }
-    // Room for more at the end, to be written.
-    [[nodiscard]] T* extend(std::size_t count) {
-        if (size_ + count > values_.size()) values_.resize(size_ + count + values_.size() / 2);
-        size_ += count;
-        return values_.data() + size_ - count;
-    }
-    void add(std::span<const T> values) { std::copy(values.begin(), values.end(), extend(values.size())); }
-    void add(const T& value) { *extend(1) = value; }
-    [[nodiscard]] std::span<const T> values() const { return {values_.data(), size_}; }
-    [[nodiscard]] std::size_t size() const { return size_; }
-
-  private:
-    Vector<T> values_;
-    std::size_t size_ = 0;
-};
+using cull::AnswerList;
+struct Attachment;
 
 struct RegionQuery {
     cull::View view;
@@ -38,6 +20,8 @@ struct RegionQuery {
     const cull::DrawLimits* limits = nullptr;
     const occlude::OcclusionBuffer* buffer = nullptr;  // leaves out what it hides
     bool list_occluded = false;
+
+    [[nodiscard]] bool asks_each() const { return limits != nullptr || buffer != nullptr; }  // single objects
 };
 
 // Kept from frame to frame.
@@ -50,11 +34,30 @@ struct WholeView {
     OcclusionStatistics occlusion;
 
     // Scratch.
+    // Regions that are asked together: all of one's objects are seen, or its tree is walked.
+    struct Batch {
+        struct Part {
+            const Attachment* region = nullptr;
+            bool is_whole = false;
+        };
+        Vector<Part> parts;
+        Vector<cull::MovedTreesQuery::Asked> trees;
+        std::size_t items = 0;
+        void clear() {
+            parts.clear();
+            trees.clear();
+            items = 0;
+        }
+    };
     cull::MovedTreesQuery query;
-    cull::VisibleSet regions, found;
+    cull::VisibleSet regions;
     occlude::VisibleSet not_hidden;
-    Vector<std::uint64_t> order;
+    Vector<std::uint64_t> pages;     // of regions that the view sees
+    Vector<const Attachment*> seen;  // these regions, in the order of the answer
+    Batch batch;
     AnswerList<std::uint32_t> straddling;  // in tree order, until the end
+    AnswerList<std::uint32_t> found;       // in one region
+    AnswerList<cull::Verdict> found_verdicts;
     Vector<Obb> boxes;
     Vector<std::uint32_t> kept;
     Vector<cull::Verdict> kept_verdicts;

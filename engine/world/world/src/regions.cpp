@@ -107,7 +107,11 @@ Result<RegionHandle> Regions::attach(const Region& region, const glm::dvec3& ori
     attachment.first = first;
     attachment.generation = next_generation_;
     attachment.alive = true;
-    if (pages > 0) attachment.bounds = bounds_in_world(region, attachment.move);
+    if (pages > 0) {
+        attachment.bounds = bounds_in_world(region, attachment.move);
+        attachment.tree = cull::moved_tree_of(region.data()->tree, attachment.move, first);
+        attachment.common_layers = region.data()->common_layers;
+    }
     renew(next_generation_);
     attached_.push_back(slot);
     object_count_ += region.object_count();
@@ -196,7 +200,7 @@ void Regions::apply(const StagedHide& change) {
 }
 
 bool Regions::update() {
-    constexpr std::size_t kRebuildBudget = 256;
+    constexpr std::size_t kRebuildBudget = 1024;  // about 25 µs
     const bool members = !attached_.empty() || !detached_.empty(), changed = members || !hides_.empty();
     changed_.clear();
     for (const std::uint32_t slot : detached_) drop(slot);
@@ -206,8 +210,9 @@ bool Regions::update() {
     detached_.clear();
     hides_.clear();
     if (members) tree_.refit();
-    wants_rebuild_ |= members;
-    if (wants_rebuild_ && tree_.item_count() > 0 && tree_.rebuild_step(kRebuildBudget)) wants_rebuild_ = false;
+    // The first that ends may have begun before the last change.
+    if (members) rebuilds_wanted_ = 2;
+    if (rebuilds_wanted_ > 0 && tree_.item_count() > 0 && tree_.rebuild_step(kRebuildBudget)) --rebuilds_wanted_;
     return changed;
 }
 

@@ -4,6 +4,7 @@
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/collide/broadphase.hpp>
 #include <crofton/core/memory.hpp>
+#include <crofton/cull/moved_tree.hpp>
 #include <crofton/geometry/move.hpp>
 #include <crofton/world/answers.hpp>
 #include <crofton/world/region.hpp>
@@ -24,6 +25,8 @@ struct RegionQuery;
 struct Attachment {
     Region region;
     Move move;
+    cull::MovedTree tree;  // the region's, of which there are objects
+    std::uint32_t common_layers = 0;
     Obb bounds;  // in the world, around all objects
     std::uint32_t first = kNoIndex;
     std::uint32_t generation = 0;
@@ -133,7 +136,10 @@ class Regions {
     void drop(std::uint32_t slot);
     void apply(const StagedHide& change);
     [[nodiscard]] bool may_be_within(const cull::DrawLimits& limits, const Attachment& region) const;
-    void add_visible(const Attachment& region, const RegionQuery& query, WholeView& result) const;
+    void list_seen(const RegionQuery& query, WholeView& result) const;
+    void add_visible(const RegionQuery& query, WholeView& result) const;  // of the regions in the batch
+    static void add_whole(const Attachment& region, bool by_tree, WholeView& result);
+    void add_listed(const Attachment& region, std::size_t tree, const RegionQuery& query, WholeView& result) const;
 
     Vector<Attachment> attachments_;
     Vector<std::uint32_t> free_slots_;
@@ -146,7 +152,7 @@ class Regions {
     Vector<std::uint32_t> slot_of_item_;  // of the tree's items
     std::uint32_t next_generation_;
     std::size_t object_count_ = 0;  // of those that are alive
-    bool wants_rebuild_ = false;
+    unsigned rebuilds_wanted_ = 0;
 };
 
 }  // namespace crofton::world

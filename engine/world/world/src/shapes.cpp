@@ -17,16 +17,6 @@
 namespace crofton::world {
 namespace {
 
-TriangleMesh box_mesh(const glm::vec3& half) {
-    TriangleMesh mesh;
-    for (int corner = 0; corner < 8; ++corner) {
-        mesh.positions.push_back(
-            {(corner & 1 ? half.x : -half.x), (corner & 2 ? half.y : -half.y), (corner & 4 ? half.z : -half.z)});
-    }
-    mesh.indices.assign(std::begin(kBoxTriangles), std::end(kBoxTriangles));
-    return mesh;
-}
-
 // So that triangles whose vertices a mirroring map has moved look outward as before.
 void turn_round(TriangleMesh& mesh) {
     for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
@@ -87,6 +77,16 @@ Triangle MeshShape::triangle(std::uint32_t index) const {
     for (std::size_t v = 0; v < 3; ++v)
         corners[v] = {glm::vec3(leaf.vertex[v][0][lane], leaf.vertex[v][1][lane], leaf.vertex[v][2][lane])};
     return corners;
+}
+
+TriangleMesh box_mesh(const glm::vec3& half) {
+    TriangleMesh mesh;
+    for (int corner = 0; corner < 8; ++corner) {
+        mesh.positions.push_back(
+            {(corner & 1 ? half.x : -half.x), (corner & 2 ? half.y : -half.y), (corner & 4 ? half.z : -half.z)});
+    }
+    mesh.indices.assign(std::begin(kBoxTriangles), std::end(kBoxTriangles));
+    return mesh;
 }
 
 bool build_under(const glm::dmat3& linear, TriangleMesh triangles, mesh::MeshTree& tree) {
@@ -209,17 +209,6 @@ PosedTree Shapes::posed_tree(const ObjectTable& table, const SpatialIndex& index
     const Transform& world = scene.world(scene.node_of(object.instance));
     if (is_rotation(world.linear)) return {tree, {world.linear, world.translation}};
     return {own(), {glm::dmat3(1.0), world.translation}};
-}
-
-PosedTree Shapes::posed_box(const Obb& box, const scene::Scene& scene, mesh::MeshTree& tree) const {
-    const glm::dmat3 axes(box.axes);
-    Own own;
-    if (!is_rotation(axes)) own.linear = axes;
-    own.half_extents = box.half_extents;
-    build_own(scene, own);
-    if (!own.is_usable) return {};
-    tree = std::move(own.tree);
-    return {&tree, {is_rotation(axes) ? axes : glm::dmat3(1.0), box.center}};
 }
 
 void Shapes::forget(std::uint32_t object) {

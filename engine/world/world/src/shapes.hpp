@@ -43,6 +43,7 @@ struct PlacedMesh {
 // Whether trees may be asked under the map as under a pose.
 [[nodiscard]] bool is_rotation(const glm::dmat3& map);
 // Builds the tree over the mesh's triangles under a linear map. False: no triangle is valid then.
+[[nodiscard]] TriangleMesh box_mesh(const glm::vec3& half_extents);  // its surface, along its own axes
 [[nodiscard]] bool build_under(const glm::dmat3& linear, TriangleMesh triangles, mesh::MeshTree& tree);
 
 // A mesh's tree serves all objects that turn and move it. An object with a scale or shear has a tree of its own, of the
@@ -79,8 +80,6 @@ class Shapes {
     [[nodiscard]] PosedTree posed_tree(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene,
                                        std::uint32_t object) const;
     void forget(std::uint32_t object);  // it is gone, or another
-    // Of a box that is no object: its triangles, in `tree`.
-    [[nodiscard]] PosedTree posed_box(const Obb& box, const scene::Scene& scene, mesh::MeshTree& tree) const;
 
   private:
     struct Mesh {

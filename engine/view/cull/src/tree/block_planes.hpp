@@ -15,11 +15,11 @@ struct BlockPlane {
     std::int32_t offset, error_bound;
 };
 
-// For the blocks of a tree. The offset's seven roundings of 2^-53 of Σ|origin − view| + |plane offset| each, as in
-// local_plane, for any block whose origin lies in the root's bounds. It may lie farther out by less than the block's
-// L1 radius: the share of that in `rounding` has room for it.
-inline void bring_before(const boxtree::Node& root, KernelView& view) {
-    const LocalOrigin at = local_origin(view, root.origin, root.l1_radius);
+// For the blocks of a tree, whose root node has this origin and radius. The offset's seven roundings of 2^-53 of
+// Σ|origin − view| + |plane offset| each, as in local_plane, for any block whose origin lies in the root's bounds. It
+// may lie farther out by less than the block's L1 radius: the share of that in `rounding` has room for it.
+inline void bring_before(const double* root_origin, float root_l1_radius, KernelView& view) {
+    const LocalOrigin at = local_origin(view, root_origin, root_l1_radius);
     for (std::uint32_t i = 0; i < view.plane_count; ++i)
         view.far[i] = 0x1p-49 * (at.size + at.l1_radius + std::fabs(view.planes[i].offset));
 }
@@ -63,13 +63,13 @@ inline BlockPlane block_plane(const KernelView& view, std::size_t i, const boxtr
 // round by 2^-51, which the rounding to 2^-14 has room for (boxtree::rounding_of).
 class TurnedPlanes {
   public:
-    TurnedPlanes(const KernelView& view, const boxtree::Axes* axes) : view_(view), axes_(axes) {}
+    explicit TurnedPlanes(const KernelView& view) : view_(view) {}
 
-    // The normals of `planes` along the tree's axes of that index. Valid until the next call.
-    const PairPlane* along(std::uint32_t axes, std::uint32_t planes) {
-        if (axes == 0) return view_.pair_planes;
-        if (axes != turned_to_) {
-            turned_to_ = axes;
+    // The normals of `planes` along the axes of that index in a tree's `axes`. Valid until the next call.
+    const PairPlane* along(const boxtree::Axes* axes, std::uint32_t index, std::uint32_t planes) {
+        if (index == 0) return view_.pair_planes;
+        if (axes + index != turned_to_) {
+            turned_to_ = axes + index;
             turned_ = 0;
         }
         for (std::uint32_t rest = planes & ~turned_; rest; rest &= rest - 1)
@@ -80,14 +80,14 @@ class TurnedPlanes {
   private:
     void turn(std::uint32_t i) {
         double normal[3];
-        for (unsigned k = 0; k < 3; ++k) normal[k] = boxtree::along(axes_[turned_to_], k, view_.planes[i].normal);
+        for (unsigned k = 0; k < 3; ++k) normal[k] = boxtree::along(*turned_to_, k, view_.planes[i].normal);
         planes_[i] = pair_plane_of(normal);
         turned_ |= 1u << i;
     }
 
     const KernelView& view_;
-    const boxtree::Axes* axes_;
-    std::uint32_t turned_to_ = 0, turned_ = 0;
+    const boxtree::Axes* turned_to_ = nullptr;
+    std::uint32_t turned_ = 0;
     PairPlane planes_[KernelView::kMaxPlanes];
 };
 

@@ -34,14 +34,15 @@ struct OpenList {
         hn::StoreU(hn::Set(du, their_planes), du, planes + count);
         count += simd::compress_store(du, which, mask, children + count);
     }
-    HWY_INLINE void append(std::uint32_t child, std::uint32_t child_planes) {
-        children[count] = child;
-        planes[count++] = child_planes;
+    HWY_INLINE void append(std::uint32_t child, std::uint32_t child_planes) { set(count++, child, child_planes); }
+    HWY_INLINE void set(std::size_t i, std::uint32_t child, std::uint32_t child_planes) {
+        children[i] = child;
+        planes[i] = child_planes;
     }
     // Pads the list with its last entry, so that prefetching past the end stays in range.
     HWY_INLINE void pad() {
-        const std::uint32_t last = count > 0 ? children[count - 1] : 0;
-        for (std::size_t i = 0; i < kOpenPadding; ++i) children[count + i] = last;
+        const std::uint32_t last = count > 0 ? children[count - 1] : 0, its_planes = count > 0 ? planes[count - 1] : 0;
+        for (std::size_t i = 0; i < kOpenPadding; ++i) set(count + i, last, its_planes);
     }
 };
 

@@ -57,8 +57,8 @@ void leave_all_undecided(std::size_t count, ListKernelOutput& output) {
 
 // A large tree is queried subtree by subtree, two levels down, with one thread as with many. So the answer comes in
 // the same order.
-Query::Tasks::Tasks(const TreeKernelInput& input, std::uint32_t planes, bool many) {
-    const std::uint64_t root = tree_entry(0, planes & ((1u << input.view->plane_count) - 1));
+Query::Tasks::Tasks(const TreeKernelInput& input, bool many) {
+    const std::uint64_t root = tree_entry(0, (1u << input.view->plane_count) - 1);
     std::uint64_t level[boxtree::kWidth];
     entries[0] = root;
     count = 1;
@@ -73,26 +73,6 @@ void Query::start(std::size_t items) {
     visible_.statistics_ = {};
     grow(visible_.ids_, items + kPadding);
     grow(visible_.straddling_, items + kPadding);
-}
-
-bool Query::is_for_kernels() const {
-    if (moved_) return moved_->view != nullptr;
-    return is_usable(view_.frustum) && has_unit_normals(view_.frustum);
-}
-
-// Before the tree's root. A moved tree is met by the view moved back, with wider error bounds: a plane's value is off
-// by |normal| ≤ 1.001 for each component times what the point is off by.
-KernelView Query::view_of(const boxtree::Structure& structure) const {
-    KernelView view = moved_ ? *moved_->view : kernel_view_of(view_);
-    if (moved_) {
-        const glm::dvec3 origin = moved_->move.back(view_.frustum.origin);
-        for (int j = 0; j < 3; ++j) view.origin[j] = origin[j];
-    }
-    bring_before(structure.nodes()[0], view);
-    if (!moved_) return view;
-    const double rounding = moved_->move.rounding(view_.frustum.origin);
-    for (std::uint32_t i = 0; i < view.plane_count; ++i) view.far[i] += rounding;
-    return view;
 }
 
 // Each chunk writes its own words, so that threads may share them.
@@ -217,9 +197,10 @@ std::size_t Query::list_marked(const std::uint64_t* seen, const std::uint64_t* m
 void Query::run(const boxtree::BoxTree& tree, Executor& executor) {
     const boxtree::Structure& structure = tree.structure();
     start(tree.boxes().size() + (moving_ ? moving_->size() : 0));
-    if (!is_for_kernels()) return run_all(tree, executor);
+    if (!is_usable(view_.frustum) || !has_unit_normals(view_.frustum)) return run_all(tree, executor);
     grow(visible_.undecided_, tree.boxes().size() + kPadding);
-    const KernelView view = view_of(structure);
+    KernelView view = kernel_view_of(view_);
+    bring_before(structure.nodes()[0].origin, structure.nodes()[0].l1_radius, view);
     TreeKernelInput input{structure.nodes().data(),
                           structure.leaves().data(),
                           structure.leaf_ranges().data(),
@@ -228,7 +209,7 @@ void Query::run(const boxtree::BoxTree& tree, Executor& executor) {
                           structure.axes().data(),
                           &view,
                           options_.mode == CullMode::exact};
-    const Tasks tasks(input, moved_ ? moved_->planes : ~0u, tree.item_count() >= kParallelItems);
+    const Tasks tasks(input, tree.item_count() >= kParallelItems);
     if (executor.concurrency() > 1 && tasks.count > 1 && !options_.limits)
         return run_parallel(tree, input, tasks, executor);
     if (!options_.candidate_mask.empty() && !options_.limits && has_candidate_slots(structure)) {
@@ -331,7 +312,7 @@ void Query::run_all(const boxtree::BoxTree& tree, Executor& executor) {
             if (!(structure.leaves()[l].layers[lane] & view_.layer_mask)) continue;
             const ItemId item = structure.slot_items()[l * boxtree::kWidth + lane];
             if (!is_wanted(boxes[item], item, structure.leaves()[l].layers[lane])) continue;
-            const Verdict verdict = classify(view_.frustum, placed(boxes[item]), options_.mode);
+            const Verdict verdict = classify(view_.frustum, boxes[item], options_.mode);
             if (verdict == Verdict::inside) visible_.ids_[inside++] = item;
             if (verdict == Verdict::straddling) visible_.straddling_[straddling++] = item;
         }
@@ -350,7 +331,7 @@ std::size_t Query::decide(const boxtree::BoxTree& tree, TreeKernelOutput& output
         constexpr std::size_t kAhead = 8;
         if (i + kAhead < output.undecided_count) hwy::Prefetch(&boxes[slot_items[output.undecided[i + kAhead]]]);
         const ItemId item = slot_items[output.undecided[i]];
-        const Obb box = placed(boxes[item]);
+        const Obb& box = boxes[item];
         if (!is_wanted(box, item, layer_masks[item])) continue;
         const Verdict verdict = classify_usable(view_.frustum, box, options_.mode);
         if (verdict != Verdict::outside)

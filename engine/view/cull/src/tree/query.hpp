@@ -4,7 +4,6 @@
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/cull/bound_set.hpp>
 #include <crofton/cull/cull.hpp>
-#include <crofton/geometry/move.hpp>
 
 #include "limits/limits.hpp"
 #include "list/list_kernel.hpp"
@@ -23,28 +22,17 @@ void set_lengths(KernelView& view);  // for spheres
 // The answer if the kernel decided nothing.
 void leave_all_undecided(std::size_t count, ListKernelOutput& output);
 
-// A tree whose boxes are where `move` takes them.
-struct Moved {
-    const Move& move;
-    const KernelView* view;  // of the view before it is moved; nullptr: kernels cannot take it
-    std::uint32_t planes;    // the boxes are inside of all others
-};
-
 class Query {
   public:
     // Tests movers, if there are any, besides a BoxTree.
-    Query(const View& view, VisibleSet& visible, const CullOptions& options, const MovingBoxes* moving = nullptr,
-          const Moved* moved = nullptr)
-        : view_(view), visible_(visible), options_(options), moving_(moving), moved_(moved) {}
+    Query(const View& view, VisibleSet& visible, const CullOptions& options, const MovingBoxes* moving = nullptr)
+        : view_(view), visible_(visible), options_(options), moving_(moving) {}
 
     void run(std::span<const Obb> boxes, std::span<const std::uint32_t> layer_masks, Executor& executor);
     void run(const boxtree::BoxTree& tree, Executor& executor);
 
   private:
     void start(std::size_t items);
-    [[nodiscard]] KernelView view_of(const boxtree::Structure& structure) const;
-    [[nodiscard]] bool is_for_kernels() const;
-    [[nodiscard]] Obb placed(const Obb& box) const { return moved_ ? moved_->move(box) : box; }
     void run_all(const boxtree::BoxTree& tree, Executor& executor);
     // By the draw limits alone.
     [[nodiscard]] bool is_wanted(const Obb& box, ItemId item, std::uint32_t layers) {
@@ -63,7 +51,7 @@ class Query {
         std::uint64_t entries[kMost];
         std::size_t count = 0;
 
-        Tasks(const TreeKernelInput& input, std::uint32_t planes, bool many);
+        Tasks(const TreeKernelInput& input, bool many);
     };
     void run_parallel(const boxtree::BoxTree& tree, const TreeKernelInput& input, const Tasks& tasks,
                       Executor& executor);
@@ -93,7 +81,6 @@ class Query {
     VisibleSet& visible_;
     const CullOptions& options_;
     const MovingBoxes* moving_;
-    const Moved* moved_;
     LayerLimit layer_limit_;
     bool by_slots_ = false;  // what the options' set leaves out, the kernel has left out
 };

@@ -21,20 +21,30 @@ namespace crofton::cull::HWY_NAMESPACE {
 namespace {
 
 void run_tree(const TreeKernelInput& input, const std::uint64_t* entries, std::size_t count, TreeKernelOutput& output) {
-    Walk<NoLimits> walk(input, output, {});
+    Walk<NoLimits> walk(&input, output, {});
     walk.run(entries, count);
     output = walk.result();
 }
 
 void run_tree_of_candidates(const TreeKernelInput& input, const std::uint64_t* entries, std::size_t count,
                             TreeKernelOutput& output) {
-    Walk<NoLimits, true> walk(input, output, {});
+    Walk<NoLimits, true> walk(&input, output, {});
+    walk.run(entries, count);
+    output = walk.result();
+}
+
+void run_moved_trees(const TreeKernelInput* inputs, const std::uint32_t* planes, std::size_t count,
+                     TreeKernelOutput& output) {
+    std::uint64_t entries[kMostMovedTrees];
+    for (std::size_t t = 0; t < count; ++t)
+        entries[t] = tree_entry(0, planes[t] | static_cast<std::uint32_t>(t) << kTreeMarkShift);
+    Walk<NoLimits, false, true> walk(inputs, output, {});
     walk.run(entries, count);
     output = walk.result();
 }
 
 void run_limited_tree(const TreeKernelInput& input, const KernelLimits& limits, TreeKernelOutput& output) {
-    Walk<LimitTester> walk(input, output, LimitTester(limits, input.view->layer_mask));
+    Walk<LimitTester> walk(&input, output, LimitTester(limits, input.view->layer_mask));
     const std::uint64_t root = tree_entry(0, ((1u << input.view->plane_count) - 1) | kLimited);
     walk.run(&root, 1);
     output = walk.result();
@@ -49,8 +59,8 @@ std::size_t expand_tree(const TreeKernelInput& input, std::uint64_t entry, std::
         return 1;
     }
     const boxtree::Node& node = input.nodes[child];
-    TurnedPlanes turned(*input.view, input.axes);
-    const NodeTest test = test_node(*input.view, turned.along(node.axes, planes), node, planes);
+    TurnedPlanes turned(*input.view);
+    const NodeTest test = test_node(*input.view, turned.along(input.axes, node.axes, planes), node, planes);
     std::size_t count = 0;
     const std::uint32_t whole = seen(*input.view, node, test.alive & test.inside);
     for (std::uint32_t alive = test.alive; alive; alive &= alive - 1) {
@@ -69,6 +79,7 @@ namespace crofton::cull {
 
 HWY_EXPORT(run_tree);
 HWY_EXPORT(run_tree_of_candidates);
+HWY_EXPORT(run_moved_trees);
 HWY_EXPORT(run_limited_tree);
 HWY_EXPORT(expand_tree);
 
@@ -81,6 +92,11 @@ void run_tree_kernel(const TreeKernelInput& input, const std::uint64_t* entries,
     if (input.leaves_with_candidates != nullptr)
         return HWY_DYNAMIC_DISPATCH(run_tree_of_candidates)(input, entries, count, output);
     HWY_DYNAMIC_DISPATCH(run_tree)(input, entries, count, output);
+}
+
+void run_moved_trees_kernel(const TreeKernelInput* inputs, const std::uint32_t* planes, std::size_t count,
+                            TreeKernelOutput& output) {
+    HWY_DYNAMIC_DISPATCH(run_moved_trees)(inputs, planes, count, output);
 }
 
 void run_limited_tree_kernel(const TreeKernelInput& input, const KernelLimits& limits, TreeKernelOutput& output) {

@@ -21,6 +21,7 @@ struct TreeKernelInput {
     // in silence. For run_tree_kernel without `runs`.
     const std::uint16_t* leaves_with_candidates = nullptr;
     const std::uint16_t* nodes_with_candidates = nullptr;
+    std::uint32_t first_id = 0;  // for run_moved_trees_kernel: added to the items' ids
 };
 
 // Slots [first, first + count), all of whose items are inside.
@@ -42,10 +43,11 @@ struct TreeKernelOutput {
     std::size_t run_count;
     std::size_t inside_count, straddling_count, undecided_count, whole_count;
     std::uint64_t nodes_tested, boxes_tested, accepted_whole;
-    std::uint64_t false_positives;  // outside, found by a separating axis
+    std::uint64_t false_positives;             // outside, found by a separating axis
+    std::uint32_t* undecided_trees = nullptr;  // for run_moved_trees_kernel: which tree's slot it is
 };
 
-inline constexpr std::size_t kWorkLists = 9;
+inline constexpr std::size_t kWorkLists = 9, kMovedWorkLists = 11;
 // So many entries are handled together; the answer's order depends on which.
 inline constexpr std::size_t kTreeGroup = 8;
 
@@ -61,6 +63,19 @@ std::size_t expand_tree_kernel(const TreeKernelInput& input, std::uint64_t entry
 // Handles the children that `count` ≤ 256 entries name, and all below them.
 void run_tree_kernel(const TreeKernelInput& input, const std::uint64_t* entries, std::size_t count,
                      TreeKernelOutput& output);
+
+// Handles several trees at once, each below its root. inputs[i] is asked for with the planes that planes[i] names.
+// Their views have planes of the same normals and the same layers. Requires 1 ≤ count ≤ kMostMovedTrees. `work` has
+// kMovedWorkLists lists for the nodes and leaves of all of them; `runs` is not used.
+inline constexpr std::size_t kMostMovedTrees = 64;
+void run_moved_trees_kernel(const TreeKernelInput* inputs, const std::uint32_t* planes, std::size_t count,
+                            TreeKernelOutput& output);
+
+// Above a tree's planes in its entries: which tree it is.
+inline constexpr std::uint32_t kTreeMarkShift = 16;
+[[nodiscard]] constexpr std::uint32_t tree_mark_of(std::uint32_t planes) {
+    return planes >> kTreeMarkShift;
+}
 
 // From the root, where draw limits hold: `undecided` are also the slots whose items may be beyond one. `runs` is not
 // used.

@@ -55,7 +55,7 @@ class ManyWalk {
   private:
     HWY_INLINE void walk_nodes(std::uint32_t v) {
         const KernelView& view = in_.views[v];
-        TurnedPlanes turned(view, in_.axes);
+        TurnedPlanes turned(view);
         std::size_t size = 1;
         out_.stack[0] = (1u << view.plane_count) - 1;
         while (size > 0) {
@@ -73,7 +73,7 @@ class ManyWalk {
     HWY_INLINE std::size_t visit_node(std::uint32_t v, std::uint32_t id, std::uint32_t planes, std::size_t size,
                                       TurnedPlanes& turned) {
         const boxtree::Node& node = in_.nodes[id];
-        const NodeTest test = test_node(in_.views[v], turned.along(node.axes, planes), node, planes);
+        const NodeTest test = test_node(in_.views[v], turned.along(in_.axes, node.axes, planes), node, planes);
         const std::uint32_t whole = seen(in_.views[v], node, test.alive & test.inside);
         if (node.only_leaves) {
             note_leaves(node, test, whole, v);

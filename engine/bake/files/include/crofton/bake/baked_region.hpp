@@ -13,7 +13,7 @@ struct BakedRegionOptions {
     // meshes' boxes.
     bool triangles = true;
     std::uint32_t collides_with = ~0u;  // of all objects, as RegionObject
-    RegionOptions region = {};          // `meshes` is not read
+    RegionOptions region = {};          // `meshes` and `built` are not read
 };
 
 // Prepares a region of a baked scene's instances, on any thread: open() on a thread that loads, then this. The origin
@@ -24,6 +24,10 @@ struct BakedRegionOptions {
 // meshes that were baked with clusters have clusters. Everything is copied: the scene may be destroyed afterwards, and
 // nothing is read from its file later. Errors: as Region::prepare.
 [[nodiscard]] Result<Region> prepare_region(const BakedScene& scene, const BakedRegionOptions& options = {},
+                                            Executor& executor = serial_executor());
+// The same, and takes the scene's tree if it was baked for the region's max_origin (BakeOptions::region_max_origin),
+// instead of building one. RegionOptions::tree is then not read.
+[[nodiscard]] Result<Region> prepare_region(BakedScene&& scene, const BakedRegionOptions& options = {},
                                             Executor& executor = serial_executor());
 
 }  // namespace crofton::bake

@@ -102,6 +102,10 @@ struct BakeOptions {
     // Cuts each mesh into clusters (depth::ClusteredMesh), so that the program that opens it need not. The file then
     // has about as many bytes of clusters as of positions and indices.
     bool clusters = true;
+    // For a file that becomes a region: its RegionOptions::max_origin. The tree's boxes are those that the region's
+    // objects then have, a little wider than the instances', so that the region takes the tree as it is. 0: the
+    // instances' boxes.
+    double region_max_origin = 0.0;
 };
 
 // Bakes the scene as of its last update() into a file. Deterministic. Meshes that ClusteredMesh::cut refuses are baked

@@ -1,13 +1,22 @@
 // SPDX-License-Identifier: MIT
-// A ray at a tree whose boxes are stored relative to an origin.
+// A ray at trees whose boxes are stored relative to an origin.
 #pragma once
+#include <crofton/boxtree/tree_arrays.hpp>
 #include <crofton/collide/broadphase.hpp>
 #include <crofton/geometry/move.hpp>
 
 namespace crofton::collide {
 
-// As visit_along() of a tree, with each box moved: t is that of raycast(ray, moved box), and no such box is missed.
-void visit_along(const Ray& ray, const boxtree::BoxTree& tree, const Move& move, RayVisitor visit,
-                 std::uint32_t layers = ~0u);
+// A tree, and where its boxes are.
+struct MovedTree {
+    const boxtree::TreeArrays* tree = nullptr;  // nullptr: none
+    const Move* move = nullptr;
+};
+
+// As visit_along() of the trees that stand at the items of a tree, whose boxes contain theirs: t is that of
+// raycast(ray, moved box), and no such box is missed. tree_of(item) is asked for once the ray comes near it; nearer
+// trees come first. visit(item, item of its tree, t).
+void visit_along(const Ray& ray, const boxtree::BoxTree& trees, FunctionRef<MovedTree(boxtree::ItemId)> tree_of,
+                 FunctionRef<double(boxtree::ItemId, boxtree::ItemId, double)> visit, std::uint32_t layers = ~0u);
 
 }  // namespace crofton::collide

@@ -47,6 +47,9 @@ struct RegionOptions {
     // No coordinate of an origin may be larger if an object has a mesh or a shape. The boxes of such objects are wider
     // by about 1e-15 of it, so that they contain the mesh and the shape at any such origin, however sums round.
     double max_origin = 1e9;
+    // A tree that an earlier prepare() of the same objects, or a bake, has built. The region takes it if its items have
+    // the boxes and layers of the objects, bit for bit; otherwise it builds its own. Building takes most of the time.
+    boxtree::BoxTree* built = nullptr;
     // The region holds it until its last copy is destroyed: what shapes refer to, if you like.
     std::shared_ptr<const void> keep = {};
 };
