@@ -88,7 +88,8 @@ class RegionWriter {
     // Takes over what an earlier run has written, as far as it is still there. Another bake's state is an error if the
     // user has named it.
     Result<void> load() {
-        if (!std::filesystem::exists(path_)) return {};
+        std::error_code unknown;
+        if (!std::filesystem::exists(path_, unknown)) return {};
         const auto file = bake::MappedFile::open(path_, {.access = bake::FileAccess::read});
         if (!file) return tl::unexpected(file.error());
         auto earlier = region_state_from(file->bytes());
@@ -142,7 +143,8 @@ class RegionWriter {
         if (!file) return tl::unexpected(file.error());
         if (auto written = bake::write_file(bake_.folder + "/" + bake::kRegionIndexName, *file); !written)
             return written;
-        if (bake_.state.empty()) std::filesystem::remove(path_);
+        std::error_code remains;  // which would do no harm
+        if (bake_.state.empty()) std::filesystem::remove(path_, remains);
         return {};
     }
 

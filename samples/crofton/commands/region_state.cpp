@@ -111,7 +111,8 @@ Result<RegionState> region_state_from(std::span<const std::byte> file) {
     RegionState state{.key = whole->front().key, .regions = whole->front().regions, .done = {}};
     for (std::size_t i = 0; i < records->size(); ++i) {
         const DoneRecord& record = (*records)[i];
-        if (record.place >= state.regions || !state.done.try_emplace(record.place, (*files)[i], record.checksum).second)
+        if (record.place >= state.regions ||
+            !state.done.try_emplace(record.place, RegionState::Done{(*files)[i], record.checksum}).second)
             return fail(ErrorCode::parse, i, "regions: a region is there twice, or is beyond the last");
     }
     return state;

@@ -77,9 +77,13 @@ Result<Region> prepare(const bake::BakedScene& scene, bool meshes) {
 Result<std::unique_ptr<StreamedRegion>> load(const std::string& folder, const bake::RegionFile& file,
                                              const RegionStreamOptions& options, MeshLibrary& library) {
     const std::string path = folder + "/" + file.name;
-    const auto scene = bake::BakedScene::open(path, serial_executor(), {.largest = options.largest_file});
-    if (!scene) return tl::unexpected(scene.error());
-    if (scene->instances().size() != file.objects || std::filesystem::file_size(path) != file.bytes)
+    // Read, not mapped: whoever writes the folder anew while it is flown over does no harm.
+    const auto bytes =
+        bake::MappedFile::open(path, {.access = bake::FileAccess::read, .largest = options.largest_file});
+    if (!bytes) return tl::unexpected(bytes.error());
+    const auto scene = bake::BakedScene::from_memory(bytes->bytes());
+    if (!scene) return fail(scene.error().code, scene.error().item, path + ": " + scene.error().message);
+    if (scene->instances().size() != file.objects || bytes->bytes().size() != file.bytes)
         return fail(ErrorCode::parse, kNoItem, path + ": is not the file that the index names");
     auto result = std::make_unique<StreamedRegion>();
     for (scene::MeshId mesh = 0; mesh < scene->mesh_count(); ++mesh)

@@ -49,6 +49,11 @@ constexpr StatisticsRow kMoreRows[] = {
     {"  apart by edges", "separated_by_edges", "separated by the cross product of two edges"},
     {"  refined", "pairs_refined", "decided in double or exactly, where float could not"},
     {"contact points", "contacts", "of the colliding pairs' manifolds"},
+    {"regions attached", "regions_attached", "of a folder of regions"},
+    {"  came", "regions_came", "attached before this frame"},
+    {"  went", "regions_went", "detached before this frame"},
+    {"  attach \u00b5s", "regions_attach_us", "to attach and to detach them, a part of the update"},
+    {"  wait \u00b5s", "regions_wait_us", "for regions that were not prepared in time: in scripts alone"},
 };
 
 const pipeline::StatisticsColumn& column_named(const char* name) {
@@ -141,6 +146,7 @@ void table(const char* id, const PanelInput& input, std::span<const StatisticsRo
         const pipeline::StatisticsColumn& column = column_named(row.column);
         const Value value = column.value;
         const bool later = is_counted_later(row.column);
+        if (std::string_view(row.column).starts_with("regions_") && !input.frame.regions) continue;
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
         ImGui::TextUnformatted(row.label);

@@ -147,8 +147,9 @@ TEST_SUITE("bake/region_files") {
         std::vector<Vector<std::byte>> serial(regions.size()), parallel(regions.size());
         for (std::size_t i = 0; i < regions.size(); ++i) serial[i] = regions.bake(i, town.options()).value();
         ThreadPool pool(4);
-        pool.parallel_for(regions.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
-            for (std::size_t i = begin; i < end; ++i) parallel[i] = regions.bake(i, town.options()).value();
+        const SceneRegions again = SceneRegions::split(town.scene, 4, 4).value();
+        pool.parallel_for(again.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
+            for (std::size_t i = begin; i < end; ++i) parallel[i] = again.bake(i, town.options()).value();
         });
         std::set<std::string> names;
         for (std::size_t i = 0; i < regions.size(); ++i) {
@@ -156,8 +157,13 @@ TEST_SUITE("bake/region_files") {
             CHECK(names.insert(regions.region(i).name).second);
             const auto baked = BakedScene::from_memory(serial[i]);
             REQUIRE(baked);
-            for (scene::MeshId m = 0; m < baked->mesh_count(); ++m)
-                CHECK(baked->mesh(m).look == town.looks[baked->mesh(m).name == "house" ? 0 : 1]);
+            for (scene::MeshId m = 0; m < baked->mesh_count(); ++m) {
+                const MeshView mesh = baked->mesh(m);
+                CHECK(mesh.look == town.looks[mesh.name == "house" ? 0 : 1]);
+                REQUIRE(baked->clusters(m) != nullptr);
+                CHECK(baked->clusters(m)->serialise() ==
+                      depth::ClusteredMesh::cut(mesh.positions, mesh.indices).value().serialise());
+            }
         }
         CHECK(error_of(SceneRegions::split(town.scene, 0, 1)).code == ErrorCode::out_of_range);
         CHECK(error_of(SceneRegions::split(town.scene, 1, 1025)).code == ErrorCode::out_of_range);

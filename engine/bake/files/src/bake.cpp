@@ -72,6 +72,11 @@ void add_arrays(const Arrays& arrays, Writer& writer) {
 }  // namespace
 
 Result<Vector<std::byte>> bake(const scene::Scene& scene, Executor& executor, const BakeOptions& options) {
+    return bake(scene, executor, options, KnownClusters());
+}
+
+Result<Vector<std::byte>> bake(const scene::Scene& scene, Executor& executor, const BakeOptions& options,
+                               const KnownClusters& known) {
     return detail::recover([&]() -> Result<Vector<std::byte>> {
         if (options.looks.size() > scene.mesh_count())
             return fail(ErrorCode::invalid_argument, scene.mesh_count(), "more looks than the scene has meshes");
@@ -101,7 +106,7 @@ Result<Vector<std::byte>> bake(const scene::Scene& scene, Executor& executor, co
             !added)
             return tl::unexpected(added.error());
         if (!options.looks.empty()) add_looks(options.looks, scene.mesh_count(), writer);
-        if (options.clusters) add_clusters(scene, writer, executor);
+        if (options.clusters) add_clusters(scene, known, writer, executor);
         if (options.occluders != nullptr)
             if (const auto added = add_occluders(*options.occluders, scene.node_count(), writer); !added)
                 return tl::unexpected(added.error());

@@ -12,6 +12,11 @@ tl::unexpected<Error> bad_section(std::initializer_list<MessagePart> what, std::
     return fail(ErrorCode::parse, mesh, what);
 }
 
+Vector<std::byte> serialised_clusters(const TriangleMesh& mesh) {
+    const auto cut = depth::ClusteredMesh::cut(mesh.positions, mesh.indices);
+    return cut ? cut->serialise() : Vector<std::byte>();
+}
+
 }  // namespace
 
 MeshLook look_of(std::uint8_t bits) {
@@ -37,13 +42,17 @@ Result<std::span<const std::uint8_t>> read_looks(const Reader& reader, std::size
     return looks;
 }
 
-void add_clusters(const scene::Scene& scene, Writer& writer, Executor& executor) {
+const Vector<std::byte>& SharedClusters::of(scene::MeshId mesh, const TriangleMesh& triangles) {
+    std::call_once(once_[mesh], [&] { serialised_[mesh] = serialised_clusters(triangles); });
+    return serialised_[mesh];
+}
+
+void add_clusters(const scene::Scene& scene, const KnownClusters& known, Writer& writer, Executor& executor) {
     Vector<Vector<std::byte>> parts(scene.mesh_count());
     detail::recoverable_for(executor, parts.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
         for (std::size_t m = begin; m < end; ++m) {
             const TriangleMesh& mesh = scene.mesh(static_cast<scene::MeshId>(m));
-            const auto cut = depth::ClusteredMesh::cut(mesh.positions, mesh.indices);
-            if (cut) parts[m] = cut->serialise();
+            parts[m] = known.shared != nullptr ? known.shared->of(known.mesh_of[m], mesh) : serialised_clusters(mesh);
         }
     });
     Vector<std::byte> all;

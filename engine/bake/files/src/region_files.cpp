@@ -8,6 +8,8 @@
 #include <limits>
 #include <string_view>
 
+#include "mesh_sections.hpp"
+
 namespace crofton::bake {
 namespace {
 
@@ -88,6 +90,10 @@ BakedOccluders occluders_of(const BakedOccluders& all, const PartMaps& maps) {
 
 }  // namespace
 
+void SharedClustersDeleter::operator()(SharedClusters* clusters) const {
+    Destroy<SharedClusters>()(clusters);
+}
+
 Result<SceneRegions> SceneRegions::split(const scene::Scene& scene, std::uint32_t columns, std::uint32_t rows) {
     constexpr std::uint32_t kMost = 1024;
     if (columns < 1 || columns > kMost || rows < 1 || rows > kMost)
@@ -99,6 +105,7 @@ Result<SceneRegions> SceneRegions::split(const scene::Scene& scene, std::uint32_
             if (!of_node.is_empty()) middles.include(of_node.center());
         SceneRegions result;
         result.scene_ = &scene;
+        result.clusters_ = SharedClustersOwner(Owner<SharedClusters>::make(scene.mesh_count()).release());
         if (middles.is_empty()) return result;
         const Cells x(middles.min.x, middles.max.x, columns), z(middles.min.z, middles.max.z, rows);
         Vector<Part> parts(std::size_t{columns} * rows);
@@ -162,7 +169,7 @@ Result<Vector<std::byte>> SceneRegions::bake(std::size_t i, const BakeOptions& o
         of_part.region_max_origin = RegionOptions().max_origin;
         of_part.looks = looks;
         of_part.occluders = options.occluders != nullptr ? &occluders : nullptr;
-        return bake::bake(scene, serial_executor(), of_part);
+        return bake::bake(scene, serial_executor(), of_part, {clusters_.get(), maps.old_mesh});
     });
 }
 

@@ -17,6 +17,12 @@ struct RegionFile {
     std::uint64_t bytes = 0;  // of the file
 };
 
+class SharedClusters;
+struct SharedClustersDeleter {
+    void operator()(SharedClusters* clusters) const;
+};
+using SharedClustersOwner = Owner<SharedClusters, SharedClustersDeleter>;
+
 // Splits a scene into cells of equal size along x and z, as of its last update(). Instances on one node stay together,
 // in the cell of the middle of their boxes. Cells without instances have no region.
 class SceneRegions {
@@ -40,6 +46,7 @@ class SceneRegions {
     };
     const scene::Scene* scene_ = nullptr;
     Vector<Part> parts_;
+    SharedClustersOwner clusters_;  // of the scene's meshes, which are cut once for all regions
 };
 
 // Returns the index of regions as a file. Errors: a name that read_region_index would refuse.
