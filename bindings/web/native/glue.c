@@ -63,7 +63,7 @@ AT(crofton_draw_limits, layer_distances, 48);
 AT(crofton_draw_limits, drawn_word_count, 64);
 AT(crofton_draw_limits, hysteresis, 72);
 SIZE(crofton_picture_view, 32);
-SIZE(crofton_view_request, 48);
+SIZE(crofton_view_request, 52);
 AT(crofton_view_request, picture, 44);
 AT(crofton_view_request, limits, 24);
 AT(crofton_view_request, candidate_mask, 28);
