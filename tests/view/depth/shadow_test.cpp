@@ -284,6 +284,15 @@ TEST_SUITE("depth/shadow") {
         const std::uint64_t by_light = light_culler.statistics().triangles_listed;
         CHECK(listed({&camera_culler, receivers}) > 0);
         CHECK(light_culler.statistics().triangles_listed == by_light);
+        receivers[0] = receivers[1];
+        for (const float error : {-1.0f, std::numeric_limits<float>::quiet_NaN()}) {
+            auto moved = drawn;
+            moved[1].position_error = error;
+            REQUIRE(camera_culler.find_visible(moved, camera.size));
+            CHECK(listed({&camera_culler, receivers}) > 0);
+            CHECK(light_culler.statistics().triangles_listed == by_light);
+        }
+        REQUIRE(camera_culler.find_visible(drawn, camera.size));
 
         const auto code_of = [&](const ShadowReceivers& of, const PictureView& map) {
             return light_culler.find_casters(casters, map, of).error().code;

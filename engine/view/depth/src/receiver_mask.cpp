@@ -171,7 +171,7 @@ void ReceiverMask::add_object(const DepthReceiver& receiver, const DepthObject& 
         in_map_.moved[i] *= drawn.position_error;
     }
     add_interpolation_error(in_map_, mesh.layout().largest);
-    if (!can_be_placed(in_map_)) return mark_everything();
+    if (!(drawn.position_error >= 0.0f) || !can_be_placed(in_map_)) return mark_everything();
     if (!receiver.solid) return add_clusters(mesh, clusters);
     boxes_.assign(1, mesh.bound());
     project_into_map();
