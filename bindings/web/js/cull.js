@@ -4,7 +4,7 @@ import { Owned, create, indicesOf } from './memory.js';
 
 /** Writes a request for a frustum to the scratch memory. */
 function writeRequest(memory, frustum, { conservative = false, treeOrder = false } = {}) {
-    const at = memory.scratch(56), { words } = memory, first = at >> 2;
+    const at = memory.scratch(52), { words } = memory, first = at >> 2;
     memory.fill('default_view_request', at);
     words[first + 3] = frustum.handle + 8;
     words[first + 4] = words[(frustum.handle >> 2) + 1];

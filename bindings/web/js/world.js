@@ -205,12 +205,13 @@ export class World extends Owned {
     }
     #view({ camera, matrix, depth = 'minusOneToOne', origin, volume, layers = ALL, occlusion, picture, limits, treeOrder, conservative },
         visible, arrays, places) {
-        const { memory } = this, at = memory.scratch(608), { words, doubles, floats } = memory;
-        const request = at + 128, first = request >> 2, word = (name) => {
+        // From `at` on: the camera, 128 limits, 256 the matrix, 432 occlusion, 464 the picture, 496 the request.
+        const { memory } = this, at = memory.scratch(552), { words, doubles, floats } = memory;
+        const request = at + 496, first = request >> 2, word = (name) => {
             if (!(name in DEPTH)) throw failure(1, `depth is one of ${Object.keys(DEPTH).join(', ')}`);
             return DEPTH[name];
         };
-        const structs = { request, limits: at + 512 };
+        const structs = { request, limits: at + 128 };
         memory.fill('default_view_request', request);
         if (camera) words[first + 1] = writeCamera(memory, camera, at);
         if (matrix) {
