@@ -335,7 +335,7 @@ pub struct ViewRequest {
     pub conservative: u32,
     pub tree_order: u32,
     pub picture: *const PictureView,
-    pub receivers: *const std::ffi::c_void,
+    pub receivers: *const c_void,
 }
 
 #[repr(C)]

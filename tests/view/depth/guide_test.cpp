@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 #include <crofton/crofton.hpp>
 #include <cstdio>
+#include <set>
 #include <vector>
 
 #include "../../box_mesh.hpp"
@@ -40,6 +41,16 @@ int show(World& world, const Vector<glm::vec3>& positions, const Vector<std::uin
     return 0;
 }
 
+template <class Draw>
+void show_shadows(const World& world, const Camera& camera, const Camera& sun, ViewResult& visible, ViewResult& casters,
+                  const Draw& draw_into_map) {
+    world.view({.camera = camera, .picture = depth::PictureView{1280, 720}}, visible).value();
+    // The map of 2048 x 2048 texels, looked up by 3 x 3 bilinear comparisons.
+    const ShadowReceivers receivers{.seen = &visible, .radius = 2.0f};
+    world.view({.camera = sun, .picture = depth::PictureView{2048, 2048}, .receivers = receivers}, casters).value();
+    for (const depth::VisibleCluster& listed : casters.triangles()) draw_into_map(listed);
+}
+
 }  // namespace
 
 TEST_SUITE("depth/guide") {
@@ -51,5 +62,27 @@ TEST_SUITE("depth/guide") {
         CHECK(show(world, box.positions, box.indices, {}, {-5.0, -12.0}, draw) == 0);
         CHECK(objects == std::vector<std::uint32_t>{0, 0});
         CHECK(show(world, box.positions, {}, {}, {}, draw) == 1);
+    }
+
+    TEST_CASE("the example of shadows draws the box that throws one on the other, and not the box that nobody sees") {
+        World world;
+        const TriangleMesh box = crofton::testing::cube_mesh();
+        const auto mesh =
+            world.add_mesh({.positions = box.positions, .indices = box.indices, .clusters = true}).value();
+        // Seen; above it, out of the picture; behind it, and in nobody's light.
+        for (const glm::dvec3& at : {glm::dvec3(0, 0, -5), glm::dvec3(1, 8, -5), glm::dvec3(0, 0, -12)})
+            world.add({.mesh = mesh, .transform = Transform{glm::dmat3(1.0), at}}).value();
+        world.update().value();
+        Camera sun;
+        sun.projection = Projection::orthographic;
+        sun.position = {0, 20, -5};
+        sun.forward = {0, -1, 0};
+        sun.up = {0, 0, -1};
+        sun.height = 30;
+        ViewResult visible, casters;
+        std::set<std::uint32_t> drawn;
+        show_shadows(world, {}, sun, visible, casters,
+                     [&](const depth::VisibleCluster& listed) { drawn.insert(listed.object); });
+        CHECK(drawn == std::set<std::uint32_t>{0, 1});
     }
 }

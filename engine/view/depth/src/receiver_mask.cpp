@@ -5,19 +5,20 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <utility>
 
 namespace crofton::depth {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-// Parts of triangles that one call may look at: beyond it, what is left is marked as it is.
-constexpr std::size_t kMaxSplits = std::size_t{1} << 16;
-constexpr std::uint32_t kMaxLevel = 14;
+// Triangles and parts of them that one call may split: beyond it, what is left is marked as it is.
+constexpr std::size_t kMaxSplits = std::size_t{1} << 14;
+constexpr std::uint32_t kMaxLevel = 28;
 // Of parts whose place in the map is not known, as the light is in their midst.
-constexpr std::uint32_t kMaxUnclearLevel = 6;
-constexpr std::int32_t kFewPixels = 4;  // of the camera's picture
-// A part of the map that is worth no splitting, each way.
-constexpr std::uint32_t kSmallShare = 64;
+constexpr std::uint32_t kMaxUnclearLevel = 12;
+// Parts that are so small are split no further: as a share of the map, and in pixels of the camera's picture.
+constexpr std::uint32_t kCoarseShare = 32;
+constexpr std::int32_t kFewPixels = 16;
 // The largest error, in pixels, of a box whose place is known (kMaxPixelError of the kernels).
 constexpr float kMaxPixelError = 0.25f;
 
@@ -28,7 +29,7 @@ Projection whole(const PictureData& picture) {
 }
 
 bool covers_few(const Projection& p) {
-    return p.x1 - p.x0 < kFewPixels && p.y1 - p.y0 < kFewPixels;
+    return std::max(p.x1 - p.x0, p.y1 - p.y0) < kFewPixels;
 }
 
 // A triangle as a box: a flat one, of twice its area.
@@ -53,6 +54,35 @@ bool can_be_placed(const ObjectData& object) {
     for (int i = 0; i < 4; ++i)
         for (int c = 0; c < 4; ++c) sum += std::abs(object.columns[c][i]);
     return sum + object.moved[0] + object.moved[1] + object.moved[2] + object.moved[3] < 1e30f;
+}
+
+// At most so wide and so high.
+bool is_within(const Projection& p, std::int32_t samples) {
+    return p.x1 - p.x0 < samples && p.y1 - p.y0 < samples;
+}
+
+// The edge from corner k to the next, that is the longest in the picture; where a corner is behind the eye, in space.
+std::size_t longest_edge(const PictureData& picture, const ObjectData& object,
+                         const std::array<glm::dvec3, 3>& corners) {
+    std::array<glm::dvec2, 3> places;
+    bool before = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const auto row = [&](std::size_t i) {
+            return double{object.columns[0][i]} * corners[k].x + double{object.columns[1][i]} * corners[k].y +
+                   (double{object.columns[2][i]} * corners[k].z + double{object.columns[3][i]});
+        };
+        const double w = row(3);
+        before = before && w > 0.0;
+        places[k] = {row(0) / w * double{picture.half_width}, row(1) / w * double{picture.half_height}};
+    }
+    std::size_t longest = 0;
+    double most = -1.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t n = (k + 1) % 3;
+        const double length = before ? glm::distance(places[k], places[n]) : glm::distance(corners[k], corners[n]);
+        if (length > most) longest = k, most = length;
+    }
+    return longest;
 }
 
 // How much the nearness of a triangle's plane changes from pixel to pixel, |across| + |up|; infinity if that is not
@@ -122,8 +152,9 @@ void ReceiverMask::begin(const SeenPicture& seen, const ShadowReceivers& receive
     columns_ = (map.width + kTile - 1) / kTile;
     const std::uint32_t rows = (map.height + kTile - 1) / kTile;
     floors_.assign(std::size_t{columns_} * rows, kInfinity);
-    small_ = static_cast<std::int32_t>(std::max(2 * kTile, static_cast<std::uint32_t>(size) / kSmallShare) +
-                                       static_cast<std::uint32_t>(2.0f * reach));
+    // Two tiles each way, beside what lookups add.
+    small_ = static_cast<std::int32_t>(2 * kTile) + static_cast<std::int32_t>(2.0f * reach);
+    coarse_ = small_ + static_cast<std::int32_t>(std::max(map.width, map.height) / kCoarseShare);
     splits_left_ = kMaxSplits;
     everything_ = false;
     empty_ = true;
@@ -140,7 +171,7 @@ void ReceiverMask::add_object(const DepthReceiver& receiver, const DepthObject& 
         in_map_.moved[i] *= drawn.position_error;
     }
     add_interpolation_error(in_map_, mesh.layout().largest);
-    if (!can_be_placed(in_map_)) return mark_everything();
+    if (!(drawn.position_error >= 0.0f) || !can_be_placed(in_map_)) return mark_everything();
     if (!receiver.solid) return add_clusters(mesh, clusters);
     boxes_.assign(1, mesh.bound());
     project_into_map();
@@ -155,7 +186,7 @@ void ReceiverMask::add_clusters(const ClusteredMesh& mesh, std::span<const Visib
     for (std::size_t i = 0; i < clusters.size(); ++i) {
         const Projection& p = map_projections_[i];
         if (p.covers_nothing()) continue;
-        if (!p.is_unclear() && is_small(p))
+        if (!p.is_unclear() && is_within(p, small_))
             mark(p);
         else
             add_triangles(mesh, clusters[i]);
@@ -180,52 +211,50 @@ void ReceiverMask::add_triangles(const ClusteredMesh& mesh, const VisibleCluster
     }
 }
 
-// Level by level; each splits what is left into four.
+// Level by level; each halves what is left.
 void ReceiverMask::add_pieces() {
     for (std::uint32_t level = 0; !pieces_.empty() && !everything_; ++level) {
         boxes_.clear();
         for (const Piece& piece : pieces_) boxes_.push_back(box_of(piece.corners));
         project_into_map();
-        if (level > 0) {
-            picture_projections_.resize(boxes_.size() + kTile);
-            project_clusters(picture_, in_picture_, whole(picture_), boxes_.data(), boxes_.size(),
-                             picture_projections_.data());
-        }
+        picture_projections_.resize(boxes_.size() + kTile);
+        project_clusters(picture_, in_picture_, whole(picture_), boxes_.data(), boxes_.size(),
+                         picture_projections_.data());
         next_.clear();
         for (std::size_t i = 0; i < pieces_.size(); ++i) {
-            const Projection& p = map_projections_[i];
-            if (p.covers_nothing()) continue;
-            if (level > 0 && !is_seen(pieces_[i], picture_projections_[i])) continue;
-            if (p.is_unclear() && is_before_light(boxes_[i])) continue;
-            const std::uint32_t most = p.is_unclear() ? kMaxUnclearLevel : kMaxLevel;
-            const bool few = level > 0 && covers_few(picture_projections_[i]) && !p.is_unclear();
-            if (level == most || few || splits_left_ == 0 || (!p.is_unclear() && is_small(p)))
-                mark(p);
+            const Projection &in_map = map_projections_[i], &in_picture = picture_projections_[i];
+            if (in_map.covers_nothing() || !is_seen(pieces_[i], in_picture)) continue;
+            if (in_map.is_unclear() && is_before_light(boxes_[i])) continue;
+            if (!in_map.is_unclear() && is_within(in_map, small_)) {
+                mark(in_map);
+                continue;
+            }
+            const bool ends = in_map.is_unclear()
+                                  ? level >= kMaxUnclearLevel
+                                  : level >= kMaxLevel || covers_few(in_picture) || is_within(in_map, coarse_);
+            if (!ends && splits_left_ > 0)
+                split(pieces_[i], in_picture, level);
+            else if (in_map.is_unclear())
+                mark_everything();
             else
-                split(pieces_[i], level);
+                mark_rows(pieces_[i], boxes_[i], in_map);
         }
         std::swap(pieces_, next_);
     }
 }
 
-void ReceiverMask::split(const Piece& piece, std::uint32_t level) {
+void ReceiverMask::split(const Piece& piece, const Projection& in_picture, std::uint32_t level) {
     --splits_left_;
     Piece part = piece;
     if (level == 0) {
-        const Cluster box = box_of(piece.corners);
-        Projection projections[1 + kTile];
-        project_clusters(picture_, in_picture_, whole(picture_), &box, 1, projections);
-        part.nearest = projections[0].nearest;
+        part.nearest = in_picture.nearest;
         part.slope = slope_of(picture_, in_picture_, piece.corners);
     }
-    const std::array<glm::dvec3, 3>& c = piece.corners;
-    const glm::dvec3 middle[3] = {0.5 * (c[0] + c[1]), 0.5 * (c[1] + c[2]), 0.5 * (c[2] + c[0])};
-    const std::array<glm::dvec3, 3> parts[4] = {{c[0], middle[0], middle[2]},
-                                                {middle[0], c[1], middle[1]},
-                                                {middle[2], middle[1], c[2]},
-                                                {middle[1], middle[2], middle[0]}};
-    for (const auto& corners : parts) {
-        part.corners = corners;
+    const std::size_t from = longest_edge(picture_, in_picture_, piece.corners), to = (from + 1) % 3;
+    const glm::dvec3 middle = 0.5 * (piece.corners[from] + piece.corners[to]);
+    for (const std::size_t replaced : {from, to}) {
+        part.corners = piece.corners;
+        part.corners[replaced] = middle;
         next_.push_back(part);
     }
 }
@@ -233,10 +262,6 @@ void ReceiverMask::split(const Piece& piece, std::uint32_t level) {
 void ReceiverMask::project_into_map() {
     map_projections_.resize(boxes_.size() + kTile);
     project_clusters(map_, in_map_, whole(map_), boxes_.data(), boxes_.size(), map_projections_.data());
-}
-
-bool ReceiverMask::is_small(const Projection& p) const {
-    return p.x1 - p.x0 < small_ && p.y1 - p.y0 < small_;
 }
 
 bool ReceiverMask::is_before_light(const Cluster& box) const {
@@ -268,6 +293,74 @@ void ReceiverMask::mark(const Projection& p) {
             float& floor = floors_[std::size_t{ty} * columns_ + tx];
             floor = std::min(floor, -p.nearest);
         }
+}
+
+// The triangle's part in each row of tiles, wider and higher by what lookups reach. Bounds are those of project().
+void ReceiverMask::mark_rows(const Piece& piece, const Cluster& box, const Projection& in_map) {
+    const MapTriangle t = triangle_in_map(piece, box);
+    const auto size = static_cast<double>(map_.tiles.width);
+    for (std::uint32_t ty = in_map.y0 / kTile; ty <= in_map.y1 / kTile; ++ty) {
+        const double low = ty * double{kTile} + 0.5 - t.reach, high = low + (kTile - 1.0) + 2.0 * t.reach;
+        double first = size, last = -1.0, farthest = -std::numeric_limits<double>::infinity();
+        const auto include = [&](const glm::dvec3& end, const glm::dvec2& per_row) {
+            // The end of the edge, or where it leaves the rows.
+            const double up = std::clamp(end.y, low, high) - end.y;
+            const double x = end.x + up * per_row.x;
+            first = std::min(first, x), last = std::max(last, x);
+            farthest = std::max(farthest, end.z + up * per_row.y);
+        };
+        for (std::size_t k = 0; k < 3; ++k) {
+            const glm::dvec3 &a = t.corners[k], &b = t.corners[(k + 1) % 3];
+            if (std::max(a.y, b.y) < low || std::min(a.y, b.y) > high) continue;
+            include(a, t.per_row[k]);
+            include(b, t.per_row[k]);
+        }
+        const double from = std::max(std::ceil(first - t.reach - 0.5), 0.0);
+        const double to = std::min(std::floor(last + t.reach - 0.5), size - 1.0);
+        if (!(from <= to)) continue;
+        const auto floor = static_cast<float>(-farthest - t.depth_error);
+        empty_ = false;
+        float* const row = floors_.data() + std::size_t{ty} * columns_;
+        for (auto tx = static_cast<std::uint32_t>(from) / kTile; tx <= static_cast<std::uint32_t>(to) / kTile; ++tx)
+            row[tx] = std::min(row[tx], floor);
+    }
+}
+
+ReceiverMask::MapTriangle ReceiverMask::triangle_in_map(const Piece& piece, const Cluster& box) const {
+    MapTriangle t;
+    double least_w = std::numeric_limits<double>::infinity(), deepest = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        std::array<double, 4> clip;
+        for (std::size_t i = 0; i < 4; ++i)
+            clip[i] = double{in_map_.columns[0][i]} * piece.corners[k].x +
+                      double{in_map_.columns[1][i]} * piece.corners[k].y +
+                      (double{in_map_.columns[2][i]} * piece.corners[k].z + double{in_map_.columns[3][i]});
+        t.corners[k] = {clip[0] / clip[3] * double{map_.half_width} + double{map_.middle_x},
+                        clip[1] / clip[3] * double{map_.half_height} + double{map_.middle_y}, clip[2] / clip[3]};
+        least_w = std::min(least_w, clip[3]);
+        deepest = std::max(deepest, std::abs(t.corners[k].z));
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+        const glm::dvec3 edge = t.corners[(k + 1) % 3] - t.corners[k];
+        t.per_row[k] = edge.y != 0.0 ? glm::dvec2(edge.x / edge.y, edge.z / edge.y) : glm::dvec2(0.0);
+    }
+    std::array<double, 4> errors;
+    for (std::size_t i = 0; i < 4; ++i) {
+        double terms = std::abs(double{in_map_.columns[3][i]});
+        for (glm::length_t c = 0; c < 3; ++c) {
+            double coordinate = std::abs(double{box.center[c]});
+            for (const glm::vec3& edge : box.half_edges) coordinate += std::abs(double{edge[c]});
+            terms += std::abs(double{in_map_.columns[c][i]}) * coordinate;
+        }
+        errors[i] = 0x1.00002p-21 * terms + double{in_map_.moved[i]};
+    }
+    const double w = least_w - 2.0 * errors[3];
+    const double moved = std::max((errors[0] + 2.0 * errors[3]) * double{map_.half_width},
+                                  (errors[1] + 2.0 * errors[3]) * double{map_.half_height}) /
+                         w;
+    t.reach = 2.0 * (double{map_.grid} + moved);
+    t.depth_error = 2.0 * (errors[2] + deepest * errors[3]) / w + 0x1p-20 * deepest;
+    return t;
 }
 
 void ReceiverMask::mark_everything() {

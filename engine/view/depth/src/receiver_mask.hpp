@@ -8,7 +8,9 @@
 #include <crofton/core/memory.hpp>
 #include <crofton/depth/depth_culler.hpp>
 #include <cstdint>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <limits>
 #include <span>
 
 #include "culler_data.hpp"
@@ -37,8 +39,15 @@ class ReceiverMask {
     // A part of a triangle of the object at hand.
     struct Piece {
         std::array<glm::dvec3, 3> corners;
-        float nearest;  // of the whole triangle, in the camera's picture
-        float slope;    // of its depth there, for each pixel: |across| + |up|
+        // Of the whole triangle, in the camera's picture. The triangle itself is seen.
+        float nearest = std::numeric_limits<float>::infinity();
+        float slope = 0.0f;  // of its depth there, for each pixel: |across| + |up|
+    };
+    // Texels, and negated nearness. Lookups read what is up to `reach` away, with up to depth_error more or less.
+    struct MapTriangle {
+        std::array<glm::dvec3, 3> corners;
+        std::array<glm::dvec2, 3> per_row;  // along the edge from each corner to the next: x and nearness
+        double reach, depth_error;
     };
 
     void begin(const SeenPicture& seen, const ShadowReceivers& receivers, const PictureView& map);
@@ -46,13 +55,14 @@ class ReceiverMask {
     void add_clusters(const ClusteredMesh& mesh, std::span<const VisibleCluster> clusters);
     void add_triangles(const ClusteredMesh& mesh, const VisibleCluster& cluster);
     void add_pieces();
-    void split(const Piece& piece, std::uint32_t level);
+    void split(const Piece& piece, const Projection& in_picture, std::uint32_t level);
     // Projects boxes_ into the map: nearness is negated, so the bound is that of the farthest point.
     void project_into_map();
-    void mark(const Projection& in_map);
+    void mark(const Projection& in_map);  // the whole rectangle
+    void mark_rows(const Piece& piece, const Cluster& box, const Projection& in_map);
+    [[nodiscard]] MapTriangle triangle_in_map(const Piece& piece, const Cluster& box) const;
     void mark_everything();
 
-    [[nodiscard]] bool is_small(const Projection& in_map) const;
     // True of points that the light does not see: behind it, or before the near plane.
     [[nodiscard]] bool is_before_light(const Cluster& box) const;
     [[nodiscard]] bool is_seen(const Piece& piece, Projection in_picture) const;
@@ -63,7 +73,7 @@ class ReceiverMask {
     glm::vec2 widened_{1.0f};  // of the map's clip coordinates, so that lookups from beyond its sides are inside
     float true_near_share_ = 0.0f;
     std::uint32_t columns_ = 0;
-    std::int32_t small_ = 0;  // texels
+    std::int32_t small_ = 0, coarse_ = 0;  // texels
     std::size_t splits_left_ = 0;
     bool everything_ = false, empty_ = true;
     Vector<float> floors_;
