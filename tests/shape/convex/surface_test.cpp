@@ -52,6 +52,34 @@ TEST_SUITE("convex/surface") {
         CHECK(apart > 100);
     }
 
+    TEST_CASE("balls and capsules have contacts iff the margin is not below the distance of the nearest triangle") {
+        RandomShapes random(47);
+        for (int i = 0; i < 120; ++i) {
+            CAPTURE(i);
+            const double scale = std::pow(10.0, random.number(-3, 3)), offset = i % 3 == 0 ? 0.0 : 1e3 * scale;
+            const Surface s = soup(random, 300, 10.0 * scale, 2.0 * scale);
+            const RigidTransform pose{random.rotation(), offset * random.direction()};
+            for (int k = 0; k < 8; ++k) {
+                const double radius = scale * std::pow(10.0, random.number(-4, 0)),
+                             length = scale * std::pow(10.0, random.number(-3, 1));
+                const Shape shape =
+                    k % 2 == 0 ? Shape::sphere(static_cast<float>(radius)).value()
+                               : Shape::capsule(static_cast<float>(length), static_cast<float>(radius)).value();
+                const RigidTransform place{random.rotation(),
+                                           pose.translation + random.number(3, 30) * scale * random.direction()};
+                double least = HUGE_VAL;
+                for (std::size_t t = 0; t < s.size(); ++t)
+                    least = std::min(least, distance({s.triangle(t), pose}, {shape, place}).distance);
+                if (least < 1e-3 * scale) continue;
+                Manifolds found;
+                for (const double part : {1.0 - 1e-9, 1.0 + 1e-9}) {
+                    contact_manifolds({s.shape(), pose}, {shape, place}, {.margin = part * least}, found);
+                    CHECK(found.all().empty() == (part < 1.0));
+                }
+            }
+        }
+    }
+
     TEST_CASE("triangles so far from the surface's origin that a step of float is an eighth are met where they are") {
         RandomShapes random(7);
         int meeting = 0;

@@ -45,10 +45,12 @@ bool is_part_nearer(const ShapeAtPose& a, const ShapeAtPose& b, const glm::dvec3
     const auto is_nearer = [&](const Part& part) {
         return part.id != but && is_nearer_than({part.shape, part.pose}, b, normal, limit, margin);
     };
-    const bool is_segment = b.shape.kind() == Kind::sphere || b.shape.kind() == Kind::capsule;
+    const bool is_segment = b.shape.kind() == Kind::sphere || b.shape.kind() == Kind::capsule,
+               is_box = b.shape.kind() == Kind::box;
     const double depth = core_support(b.shape, Pair::local(b.pose.rotation, -normal)).along + b.shape.radius();
     return visit_parts_near(
         a, b, limit, is_nearer, [&](const PartSearch& of, const Triangle& corners, std::uint32_t t) {
+            if (PartId{of.child, t} == but) return false;
             const glm::dvec3 local = Pair::local(of.pose.rotation, normal),
                              offset = b.pose.translation - of.pose.translation;
             const double top = std::max(glm::dot(local, corners[0]),
@@ -56,13 +58,14 @@ bool is_part_nearer(const ShapeAtPose& a, const ShapeAtPose& b, const glm::dvec3
             const double error =
                 0x1p-47 * (of.shape->core_radius() + b.shape.core_radius() + b.shape.radius() + glm::length(offset));
             if (glm::dot(normal, offset) - depth - top - error >= limit) return false;
-            if (is_segment) {
-                const glm::dvec3& origin = of.pose.translation;
-                const SegmentTouch segment(b, origin, of.shape->core_radius(), std::max(limit, 0.0));
-                Touch touch;
-                const Warm warm = segment.ask(placed_triangle(corners, of.pose, origin), touch);
-                if (warm == Warm::apart) return false;
-            }
+            const glm::dvec3& origin = of.pose.translation;
+            const double reach = of.shape->core_radius(), far = std::max(limit, 0.0);
+            Touch touch;
+            const Warm warm =
+                is_segment ? SegmentTouch(b, origin, reach, far).ask(placed_triangle(corners, of.pose, origin), touch)
+                : is_box   ? BoxTouch(b, origin, reach, far).ask(placed_corners(corners, of.pose, origin), touch)
+                           : Warm::unknown;
+            if (warm == Warm::apart) return false;
             return is_nearer({ShapeMaker::triangle(corners), of.pose, {of.child, t}, of.sides});
         });
 }

@@ -107,7 +107,7 @@ int face_along(const Shape& shape, const glm::dvec3& d) {
                        along);
 }
 
-void patch_of_face(const ShapeAtPose& placed, int face, const glm::dvec3& origin, Patch& patch) {
+void corners_of_face(const ShapeAtPose& placed, int face, const glm::dvec3& origin, Patch& patch) {
     const Shape& shape = placed.shape;
     const Frame place{placed.pose.rotation, placed.pose.translation - origin};
     patch.count = 0;
@@ -115,9 +115,6 @@ void patch_of_face(const ShapeAtPose& placed, int face, const glm::dvec3& origin
     patch.self = {FeatureKind::face, static_cast<std::uint16_t>(face)};
     if (shape.kind() == Kind::box) {
         const auto& corners = kBoxFaces[face];
-        glm::dvec3 outward(0.0);
-        outward[face / 2] = (face & 1) != 0 ? 1.0 : -1.0;
-        patch.normal = turned_normal(place.rotation, outward);
         const glm::dvec3& half = shape.half_extents();
         const int u = (face / 2 + 1) % 3, v = (face / 2 + 2) % 3;
         if (half[u] == 0.0 && half[v] == 0.0) return add_only(patch, place(shape.vertex(corners[0])), corners[0], 0);
@@ -131,15 +128,27 @@ void patch_of_face(const ShapeAtPose& placed, int face, const glm::dvec3& origin
             add(patch, place(shape.vertex(corners[k])), corners[k], box_edge(corners[k], corners[(k + 1) % 4]));
     } else if (shape.kind() == Kind::hull) {
         const auto vertices = shape.hull()->face_vertices(face), edges = shape.hull()->face_edges(face);
-        patch.normal = turned_normal(place.rotation, shape.hull()->face_normal(face));
         for (std::size_t k = 0; k < vertices.size(); ++k)
             add(patch, place(shape.vertex(vertices[k])), vertices[k], edges[k]);
-        if (shape.hull()->is_narrow_face(face)) patch.normal = glm::dvec3(0.0);
     } else {
         for (int k = 0; k < 3; ++k) add(patch, place(shape.vertex(k)), k, k);
-        patch.normal = is_narrow(patch.point, 3)
-                           ? glm::dvec3(0.0)
-                           : triangle_normal(place.rotation, {shape.vertex(0), shape.vertex(1), shape.vertex(2)});
+    }
+}
+
+void patch_of_face(const ShapeAtPose& placed, int face, const glm::dvec3& origin, Patch& patch) {
+    const Shape& shape = placed.shape;
+    const glm::dmat3& rotation = placed.pose.rotation;
+    corners_of_face(placed, face, origin, patch);
+    if (shape.kind() == Kind::box) {
+        glm::dvec3 outward(0.0);
+        outward[face / 2] = (face & 1) != 0 ? 1.0 : -1.0;
+        patch.normal = turned_normal(rotation, outward);
+    } else if (shape.kind() == Kind::hull ? shape.hull()->is_narrow_face(face) : is_narrow(patch.point, 3)) {
+        patch.normal = glm::dvec3(0.0);
+    } else {
+        patch.normal = shape.kind() == Kind::hull
+                           ? turned_normal(rotation, shape.hull()->face_normal(face))
+                           : triangle_normal(rotation, {shape.vertex(0), shape.vertex(1), shape.vertex(2)});
     }
 }
 

@@ -27,6 +27,8 @@ void patch_along(const ShapeAtPose& placed, const glm::dvec3& direction, const g
 // The patch of one face of a hull, box or triangle. A box's face without width is a segment or a point, with the normal
 // of the face.
 void patch_of_face(const ShapeAtPose& placed, int face, const glm::dvec3& origin, Patch& patch);
+// The same without its normal.
+void corners_of_face(const ShapeAtPose& placed, int face, const glm::dvec3& origin, Patch& patch);
 
 [[nodiscard]] inline bool has_same_id(const ContactPoint& p, const ContactPoint& q) {
     return p.on_a == q.on_a && p.on_b == q.on_b && p.part_a == q.part_a && p.part_b == q.part_b;

@@ -63,6 +63,11 @@ QueryBox box_around(const ShapeAtPose& placed, const RigidTransform& pose) {
     const glm::dvec3 offset = placed.pose.translation - pose.translation;
     box.center = back * (placed.pose.rotation * bounds.center() + offset);
     box.rounding = rounding_of(bounds.center(), offset);
+    for (int k = 0; k < 3; ++k) {  // bounds are rounded outward: without a core's own half extent that is left
+        if (!(box.half[k] <= 0x1p-40 * box.radius)) continue;
+        box.rounding += box.half[k];
+        box.half[k] = 0.0;
+    }
     return box;
 }
 

@@ -139,7 +139,7 @@ Passage::Entry Passage::entry(const Triangle& corners, double until) const {
         const glm::dvec3 center = met.first * along_;
         const glm::dvec3 near_center = nearest_on(p, edge, normal, center);
         const glm::dvec3 on_core = center + glm::clamp(near_center - center, -box_.half, box_.half);
-        cut(p, on_core - nearest_on(p, edge, normal, on_core), met);
+        cut(p, on_core - (on_core == center ? near_center : nearest_on(p, edge, normal, on_core)), met);
     }
     if (!(met.first <= met.last)) return {kNever, true};
     return {std::max(from_, met.first + middle_), met.is_apart || is_late_};

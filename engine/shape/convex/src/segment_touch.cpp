@@ -37,11 +37,14 @@ Feature feature_of_edge(int k, double s) {
     return s == 1.0 ? vertex(k == 2 ? 0 : k + 1) : Feature{FeatureKind::edge, static_cast<std::uint16_t>(k)};
 }
 
-// Of the triangle's edges and a point: each number is what offer_edge() would come to.
-void offer_edges(NearestPair& best, const PlacedTriangle& t, const glm::dvec3 (&edge)[3], const glm::dvec3& q) {
+// Of a point that is outside some of the triangle's edges: one of these has the nearest point. Each number is what
+// offer_edge() would come to.
+void offer_edges(NearestPair& best, const PlacedTriangle& t, const glm::dvec3 (&edge)[3], const double (&inward)[3],
+                 const glm::dvec3& q) {
     int nearest = -1;
     double place = 0.0;
     for (int k = 0; k < 3; ++k) {
+        if (inward[k] >= 0.0) continue;
         const glm::dvec3 &p = t.corner[k], &u = edge[k];
         const double uu = glm::dot(u, u), s = uu > 0.0 ? clamped(-glm::dot(u, p - q) / uu) : 0.0;
         const glm::dvec3 way = q - (p + s * u);
@@ -106,14 +109,14 @@ Warm SegmentTouch::ask(const PlacedTriangle& t, Touch& touch) const {
     if (low - top > far || high - bottom < -far) return Warm::apart;
     NearestPair best;
     for (int i = 0; i < count_; ++i) {
-        bool inside = true;
-        for (int k = 0; k < 3; ++k)
-            inside = inside && glm::dot(glm::cross(edge[k], end_[i] - t.corner[k]), t.normal) >= 0.0;
-        if (inside) best.offer(end_[i] - height[i] * t.normal, end_[i], kFace, end_feature(i));
+        double inward[3];
+        for (int k = 0; k < 3; ++k) inward[k] = glm::dot(glm::cross(edge[k], end_[i] - t.corner[k]), t.normal);
+        if (inward[0] >= 0.0 && inward[1] >= 0.0 && inward[2] >= 0.0)
+            best.offer(end_[i] - height[i] * t.normal, end_[i], kFace, end_feature(i));
+        else if (count_ == 1)
+            offer_edges(best, t, edge, inward, end_[i]);
     }
-    if (count_ == 1)
-        offer_edges(best, t, edge, end_[0]);
-    else
+    if (count_ > 1)
         for (int k = 0; k < 3; ++k) offer_edge(best, k, t.corner[k], edge[k], end_[0], end_[1] - end_[0], count_);
     const double distance = std::sqrt(best.squared);
     // Nearer than this the direction is rounding.

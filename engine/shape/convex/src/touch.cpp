@@ -181,7 +181,8 @@ Warm touch_at_face(const ShapeAtPose& a, const ShapeAtPose& b, const Pair& pair,
     if (-depth - pair.error > rounding + margin + pair.doubt()) return Warm::apart;
     // Contacts nearer than rounding tells are decided exactly by the other way.
     if (std::abs(depth) <= 4.0 * pair.error) return Warm::unknown;
-    patch_along(incident, -out, a.pose.translation, other);
+    const int facing = face_along(incident.shape, Pair::local(incident.pose.rotation, -out));
+    corners_of_face(incident, facing, a.pose.translation, other);
     // The deepest corner itself above the face, else the common part of the two faces.
     const glm::dvec3 x = on_a ? deepest.on_b : deepest.on_a;
     double inner = 0.0, drop = 0.0, uneven = 0.0;

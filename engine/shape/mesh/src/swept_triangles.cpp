@@ -59,10 +59,13 @@ class Sweep {
             per_speed_[k] = 1.0f / (size < 1e-12f ? 1e-12f : speed_[k]);
         }
         rounded_ = radius_ > 0.0f;
+        is_segment_ = rounded_ && box_.half[0] == 0.0f && box_.half[2] == 0.0f;
+        is_ball_ = is_segment_ && box_.half[1] == 0.0f;
     }
 
     // The lanes whose boxes may be met up to `limit`, and where at the earliest: along the face normals of both.
     HWY_INLINE std::uint32_t nodes_met(const MeshNode& node, float limit, float* entry) const {
+        if (kStill && is_segment_) return nodes_near_segment(node);
         const D d;
         std::uint32_t lanes = 0;
         for (std::size_t l = 0; l < kMeshNodeWidth; l += hn::Lanes(d)) {
@@ -128,8 +131,9 @@ class Sweep {
             for (int e = 0; e < 3; ++e)
                 for (int k = 0; k < 3; ++k) edge[e][k] = hn::Sub(p[e == 2 ? 0 : e + 1][k], p[e][k]);
             cross(edge[0], edge[1], normal);
-            cut_along(d, p, normal, met);
-            if (!hn::AllTrue(d, hn::Gt(met.first, met.last))) {
+            const bool by_nearest = kStill && is_ball_;  // the way to the nearest point tells all
+            if (!by_nearest) cut_along(d, p, normal, met);
+            if (!by_nearest && !hn::AllTrue(d, hn::Gt(met.first, met.last))) {
                 for (int e = 0; e < 3; ++e) {
                     for (int k = 0; k < 3; ++k) {
                         if (!(box_.half[k] > 0.0f)) continue;
@@ -154,6 +158,39 @@ class Sweep {
     }
 
   private:
+    // The lanes whose boxes may be near a capsule or ball. Seen from a box's own axes, the distance is no less than the
+    // root of the gaps' squares. Axes A are orthonormal to 1.5e-6, so that the gaps are off by 4.5e-6 of the distance
+    // and of the box's half extents, of which the root of their squares counts; their rounding is below 2^-20 of the
+    // offset, which `error_` holds four times.
+    HWY_INLINE std::uint32_t nodes_near_segment(const MeshNode& node) const {
+        const D d;
+        std::uint32_t lanes = 0;
+        const V near = hn::Set(d, (radius_ + error_) * (1.0f + 0x1p-16f) + 1e-15f), length = hn::Set(d, box_.half[1]);
+        for (std::size_t l = 0; l < kMeshNodeWidth; l += hn::Lanes(d)) {
+            V offset[3], squared = hn::Zero(d), sum = hn::Zero(d);
+            for (int i = 0; i < 3; ++i)
+                offset[i] = hn::Sub(hn::Load(d, node.center[i] + l), hn::Set(d, box_.center[i]));
+            for (int k = 0; k < 3; ++k) {
+                const V x = hn::Load(d, node.axes[k][0] + l), y = hn::Load(d, node.axes[k][1] + l),
+                        z = hn::Load(d, node.axes[k][2] + l), half = hn::Load(d, node.half[k] + l);
+                const V at = hn::MulAdd(x, offset[0], hn::MulAdd(y, offset[1], hn::Mul(z, offset[2])));
+                V reach = half;
+                if (!is_ball_) {
+                    const V turned =
+                        hn::MulAdd(x, hn::Set(d, box_.axes[1][0]),
+                                   hn::MulAdd(y, hn::Set(d, box_.axes[1][1]), hn::Mul(z, hn::Set(d, box_.axes[1][2]))));
+                    reach = hn::MulAdd(length, hn::Abs(turned), reach);
+                }
+                const V gap = hn::Max(hn::Sub(hn::Abs(at), reach), hn::Zero(d));
+                squared = hn::MulAdd(gap, gap, squared);
+                sum = hn::Add(sum, half);
+            }
+            const V limit = hn::MulAdd(sum, hn::Set(d, 2.0f * kBoxError), near);
+            lanes |= simd::mask_bits(d, hn::Le(squared, hn::Mul(limit, limit))) << l;
+        }
+        return lanes & ((1u << node.count) - 1u);
+    }
+
     static HWY_INLINE void cross(const VT* a, const VT* b, VT* out) {
         for (int i = 0; i < 3; ++i) {
             const int j = (i + 1) % 3, k = (i + 2) % 3;
@@ -253,7 +290,7 @@ class Sweep {
     const QueryBox box_;
     const float radius_, error_;
     float longest_, from_, speed_[3], per_speed_[3];
-    bool rounded_;
+    bool rounded_, is_segment_, is_ball_;  // a core along the box's axis y, or a point
 };
 
 struct WaitingNode {
