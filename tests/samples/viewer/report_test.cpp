@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 #include <string>
+#include <string_view>
 
 #include "../cli/run_cli.hpp"
 #include "commands/html_report.hpp"
@@ -60,7 +61,8 @@ TEST_SUITE("cli/html_report") {
         CHECK(page.find("nan") == std::string::npos);
         // Every number of the CSV has a row; a scene has no regions.
         for (const auto& column : crofton::pipeline::statistics_columns())
-            if (std::string(column.name).rfind("gpu_", 0) != 0 && std::string(column.name).rfind("regions_", 0) != 0)
+            if (!std::string_view(column.name).starts_with("gpu_") &&
+                !std::string_view(column.name).starts_with("regions_"))
                 CHECK_MESSAGE(page.find("<tr><td>" + std::string(column.name) + "</td>") != std::string::npos,
                               column.name);
         if (run.err.find("not drawing") == std::string::npos) CHECK(count_of(page, "data:image/png;base64,") >= 1);
