@@ -169,7 +169,6 @@ Result<Light> find_light(const RadiosityOptions& options, const radiosity::Patch
 }
 
 Result<int> run_radiosity(const RadiosityOptions& options) {
-    catch_interrupts();
     const auto parameters = solver_options(options);
     if (!parameters) return tl::unexpected(parameters.error());
     if (!options.shard.empty() && (options.runs == 0 || options.checkpoint.empty()))
@@ -185,6 +184,7 @@ Result<int> run_radiosity(const RadiosityOptions& options) {
     if (!lit) return tl::unexpected(lit.error());
     ThreadPool pool(options.threads);
     const auto start = Clock::now();
+    catch_interrupts();  // before, there is nothing to keep
     const auto found = find_light(options, lit->patches, *parameters, pool);
     if (!found) return tl::unexpected(found.error());
     const radiosity::Solver* const solver = &found->solver();

@@ -143,6 +143,29 @@ class Sliders {
     std::vector<std::unique_ptr<convex::Hull>> hulls_;
 };
 
+// Corners of the tiles in the plane, where cracks are that no rounding to float leaves closed.
+[[nodiscard]] inline std::vector<glm::dvec3> corners_of(const Floor& floor) {
+    std::vector<glm::dvec3> corners;
+    for (const convex::CompoundChild& part : floor.parts)
+        for (int k = 0; k < part.shape.vertex_count(); ++k) {
+            const glm::dvec3 p = part.pose.rotation * part.shape.vertex(k) + part.pose.translation;
+            if (std::abs(p.y) < 1e-6 && std::abs(p.x) < 2.0 && std::abs(p.z) < 2.0) corners.push_back(p);
+        }
+    return corners;
+}
+
+// Where a shape stands whose lowest point comes over a corner of the floor on its way, or beside it by less than 1e-9
+// of a line to another.
+[[nodiscard]] inline glm::dvec3 over_corner(RandomShapes& random, const std::vector<glm::dvec3>& corners,
+                                            const convex::Shape& shape, const glm::dmat3& turn, const glm::dvec3& way) {
+    const auto any = [&] { return corners[static_cast<std::size_t>(random.index(static_cast<int>(corners.size())))]; };
+    const glm::dvec3 to = any(), from = any();
+    const double aside = random.index(2) == 0 ? 0.0 : 1e-9 * random.number(0, 1);
+    const double when = random.index(2) == 0 ? 0.0 : 0.99;
+    const glm::dvec3 lowest = turn * convex::support_point(shape, glm::transpose(turn) * glm::dvec3(0, -1, 0));
+    return to + aside * (from - to) - lowest - when * way;
+}
+
 // How far the shape reaches down from its origin under a rotation.
 [[nodiscard]] inline double below(const convex::Shape& shape, const glm::dmat3& rotation) {
     const glm::dvec3 down = glm::transpose(rotation) * glm::dvec3(0, -1, 0);

@@ -8,6 +8,7 @@
 #include "contacts_at.hpp"
 #include "core_query.hpp"
 #include "part_cast.hpp"
+#include "union_normals.hpp"
 
 namespace crofton::convex {
 namespace {
@@ -112,10 +113,13 @@ Result<Impact> cast(const ShapeAtPose& a, const Motion& motion_a, const ShapeAtP
     if (impact.result != CastResult::hit || impact.distance <= -options.tolerance) return impact;
     if (impact.time == 0.0) return start.deepest(impact, kAnyNormal).value_or(miss(options));
     if (options.ignore_initial_overlaps) return impact;
-    if (!is_nearer_elsewhere(mover_a, mover_b, impact, 1e-3 * options.tolerance)) return impact;
+    const double margin = 1e-3 * options.tolerance;
+    if (!is_nearer_elsewhere(mover_a, mover_b, impact, margin, flush_tolerance(a, b))) return impact;
+    ContactsAt at_hit(mover_a, mover_b, options, impact.time);
+    if (!is_nearer_elsewhere(mover_a, mover_b, impact, margin, 0.0))
+        return at_hit.deepest_over_crack().value_or(impact);
     // What it slides on may seem to come nearer, within rounding.
-    const double least_cosine = start.slides() ? kSameSurface : kAnyNormal;
-    return *ContactsAt(mover_a, mover_b, options, impact.time).deepest(impact, least_cosine);
+    return *at_hit.deepest(impact, start.slides() ? kSameSurface : kAnyNormal);
 }
 
 bool slides_along(const ShapeAtPose& shape, const Motion& motion, std::span<const ShapeAtPose> touched,
@@ -123,6 +127,12 @@ bool slides_along(const ShapeAtPose& shape, const Motion& motion, std::span<cons
     if (touched.empty()) return false;
     const Motion still;
     return ContactsAt({shape, motion, {}}, {touched[0], still, touched.subspan(1)}, options, 0.0).slides();
+}
+
+std::optional<Impact> touch_over_crack(const ShapeAtPose& shape, const Motion& motion, const ShapeAtPose& object,
+                                       std::span<const ShapeAtPose> touched, const CastOptions& options) {
+    const Motion still;
+    return ContactsAt({shape, motion, {}}, {object, still, touched}, options, 0.0).deepest_over_crack();
 }
 
 }  // namespace crofton::convex

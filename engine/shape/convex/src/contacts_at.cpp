@@ -30,20 +30,24 @@ bool visit_pairs(const ShapeAtPose& a, const ShapeAtPose& b, double margin, Pair
     return visit_parts_near(a, b, margin, with_a);
 }
 
-// Tests whether two shapes are nearer to each other than `limit`: by `margin`, or along another direction than
-// `normal`.
-bool is_nearer_than(const ShapeAtPose& a, const ShapeAtPose& b, const glm::dvec3& normal, double limit, double margin) {
-    const Distance d = near_distance(a, b, limit);
+// What to compare the distances of other parts with.
+struct Limits {
+    double one_way, other_way;  // along the hit's normal, along other normals
+};
+
+bool is_nearer_than(const ShapeAtPose& a, const ShapeAtPose& b, const glm::dvec3& normal, const Limits& limits) {
+    const Distance d = near_distance(a, b, limits.other_way);
     const bool other_way = glm::dot(d.normal, normal) < kSameDirection;
-    return d.distance < (other_way ? limit : limit - margin);
+    return d.distance < (other_way ? limits.other_way : limits.one_way);
 }
 
 // The same of all parts of a but one, and a convex b. Most lie behind the plane across `normal` that touches b's
 // nearest points.
 bool is_part_nearer(const ShapeAtPose& a, const ShapeAtPose& b, const glm::dvec3& normal, const PartId& but,
-                    double limit, double margin) {
+                    const Limits& limits) {
+    const double limit = limits.other_way;
     const auto is_nearer = [&](const Part& part) {
-        return part.id != but && is_nearer_than({part.shape, part.pose}, b, normal, limit, margin);
+        return part.id != but && is_nearer_than({part.shape, part.pose}, b, normal, limits);
     };
     const bool is_segment = b.shape.kind() == Kind::sphere || b.shape.kind() == Kind::capsule,
                is_box = b.shape.kind() == Kind::box;
@@ -72,18 +76,18 @@ bool is_part_nearer(const ShapeAtPose& a, const ShapeAtPose& b, const glm::dvec3
 
 }  // namespace
 
-bool is_nearer_elsewhere(const Mover& a, const Mover& b, const Impact& hit, double margin) {
+bool is_nearer_elsewhere(const Mover& a, const Mover& b, const Impact& hit, double margin, double farther) {
     Flight flight(a.shape, a.motion, b.shape, b.motion);
     flight.move_to(hit.time);
     const bool bounded = !is_unbounded(a.shape) && !is_unbounded(b.shape);
+    const Limits limits{hit.distance - margin, hit.distance + farther};
     if (bounded && b.shape.shape.is_convex())
-        return is_part_nearer(flight.a(), flight.b(), hit.normal, hit.part_a, hit.distance, margin);
+        return is_part_nearer(flight.a(), flight.b(), hit.normal, hit.part_a, limits);
     if (bounded && a.shape.shape.is_convex())
-        return is_part_nearer(flight.b(), flight.a(), -hit.normal, hit.part_b, hit.distance, margin);
-    return visit_pairs(flight.a(), flight.b(), hit.distance, [&](const Part& part_a, const Part& part_b) {
+        return is_part_nearer(flight.b(), flight.a(), -hit.normal, hit.part_b, limits);
+    return visit_pairs(flight.a(), flight.b(), limits.other_way, [&](const Part& part_a, const Part& part_b) {
         if (part_a.id == hit.part_a && part_b.id == hit.part_b) return false;
-        return is_nearer_than({part_a.shape, part_a.pose}, {part_b.shape, part_b.pose}, hit.normal, hit.distance,
-                              margin);
+        return is_nearer_than({part_a.shape, part_a.pose}, {part_b.shape, part_b.pose}, hit.normal, limits);
     });
 }
 
@@ -114,18 +118,90 @@ ContactsAt::ContactsAt(const Mover& a, const Mover& b, const CastOptions& option
       b_{placed_b_, b.motion, b.beside},
       options_(options) {
     bool own = true;
-    const double left = options.duration - time;
-    visit_all_pairs(
-        [&](bool is_own) { own = is_own; },
-        [&](const Part& part_a, const Motion& motion_a, const Part& part_b, const Motion& motion_b) {
-            const auto impact = touch(part_a, part_b);
-            if (!impact) return;
-            const Flight flight({part_a.shape, part_a.pose}, motion_a, {part_b.shape, part_b.pose}, motion_b);
-            const double slack = 0x1p-40 * (flight.size() + flight.way(left));
-            const bool slides = flight.closing(impact->normal)(left) < std::max(impact->distance, slack);
-            add({part_a, part_b, *impact, own, slides});
-        });
+    visit_all_pairs([&](bool is_own) { own = is_own; },
+                    [&](const Part& part_a, const Motion& motion_a, const Part& part_b, const Motion& motion_b) {
+                        const auto impact = touch(part_a, part_b);
+                        if (!impact) return;
+                        Contact contact{part_a, part_b, motion_a, motion_b, *impact, own};
+                        contact.slides = slides_past(contact);
+                        add(contact);
+                    });
+    close_cracks();
     find_covered();
+}
+
+bool ContactsAt::slides_past(const Contact& contact) const {
+    const double left = options_.duration - time_;
+    const Flight flight({contact.a.shape, contact.a.pose}, contact.motion_a, {contact.b.shape, contact.b.pose},
+                        contact.motion_b);
+    const double slack = 0x1p-40 * (flight.size() + flight.way(left));
+    return flight.closing(contact.impact.normal)(left) < std::max(contact.impact.distance, slack);
+}
+
+// The corners of parts are floats, so that flush parts may have cracks between them. What is over a crack is nearest to
+// the edges there. It touches a face that it is beside by no more than rounding, if no part is beyond that.
+void ContactsAt::close_cracks() {
+    if (count_ < 2) return;
+    for (std::size_t i = 0; i < count_; ++i) {
+        Contact& contact = at(i);
+        Impact& impact = contact.impact;
+        if (!(impact.distance > 0.0)) continue;
+        const ShapeAtPose a{contact.a.shape, contact.a.pose}, b{contact.b.shape, contact.b.pose};
+        const Pair pair(a, b);
+        const double rounding = flush_tolerance(a, b);
+        double least = std::min(rounding / impact.distance, 1.4);
+        glm::dvec3 normal(0.0), over(0.0);
+        bool of_a = false;
+        const auto offer = [&](const glm::dvec3& face, bool is_of_a) {
+            const double turn = glm::distance(face, impact.normal);
+            if (face == glm::dvec3(0.0) || !(turn < least) || !is_free_face(face)) return;
+            // The point over the face that is deepest along it.
+            double extent = 0.0;
+            const Corner corner = pair.support(face, extent);
+            glm::dvec3 deepest = a.pose.translation + (is_of_a ? corner.on_b - b.shape.radius() * face
+                                                               : corner.on_a + a.shape.radius() * face);
+            const glm::dvec3& told = is_of_a ? impact.on_b : impact.on_a;
+            const double deeper = glm::dot(face, impact.on_b - impact.on_a) + extent + pair.rounding();
+            if (deeper <= 1e-9 * pair.size)
+                deepest = told;
+            else if (glm::distance(deepest, told) > rounding)
+                return;
+            least = turn;
+            normal = face;
+            over = deepest;
+            of_a = is_of_a;
+        };
+        for (int k = 0; k < face_count(a.shape); ++k) offer(face_normal(a, k), true);
+        for (int k = 0; k < face_count(b.shape); ++k) offer(-face_normal(b, k), false);
+        if (normal == glm::dvec3(0.0)) continue;
+        impact.normal = normal;
+        impact.distance = of_a ? glm::dot(normal, over - impact.on_a) : glm::dot(normal, impact.on_b - over);
+        impact.on_a = of_a ? over - impact.distance * normal : over;
+        impact.on_b = of_a ? over : over + impact.distance * normal;
+        contact.slides = slides_past(contact);
+        contact.over_crack = true;
+    }
+}
+
+// Whether none of the contacts' parts overlap along it by more than rounding.
+bool ContactsAt::is_free_face(const glm::dvec3& face) const {
+    for (std::size_t i = 0; i < count_; ++i) {
+        const ShapeAtPose a{at(i).a.shape, at(i).a.pose}, b{at(i).b.shape, at(i).b.pose};
+        if (is_half_space(a) || is_half_space(b)) continue;
+        const Pair pair(a, b);
+        if (pair.extent(face) + pair.rounding() > flush_tolerance(a, b)) return false;
+    }
+    return true;
+}
+
+std::optional<Impact> ContactsAt::deepest_over_crack() const {
+    std::optional<Impact> best;
+    for (std::size_t i = 0; i < count_; ++i) {
+        const Contact& contact = at(i);
+        if (!contact.over_crack || !contact.own || contact.slides) continue;
+        if (!best || contact.impact.distance < best->distance) best = in_world(contact.impact);
+    }
+    return best;
 }
 
 void ContactsAt::visit_all_pairs(FunctionRef<void(bool own)> begin, MovingPairVisitor visit) const {
@@ -246,7 +322,7 @@ std::optional<Impact> ContactsAt::deepest(const Impact& hit, double least_cosine
     for (std::size_t i = 0; i < count_; ++i) {
         const Contact& contact = at(i);
         if (!contact.own || contact.slides) continue;
-        if (glm::dot(contact.impact.normal, hit.normal) < least_cosine) continue;
+        if (!contact.over_crack && glm::dot(contact.impact.normal, hit.normal) < least_cosine) continue;
         bool is_told = false;
         for (std::size_t k = 0; k < count_; ++k) {
             if (!is_told_by(contact, at(k))) continue;
@@ -263,12 +339,16 @@ std::optional<Impact> ContactsAt::deepest(const Impact& hit, double least_cosine
         best->part_b = hit.part_b;
     }
     if (!best) return others_tell ? best : hit;
-    best->time = time_;
+    return in_world(*best);
+}
+
+Impact ContactsAt::in_world(Impact impact) const {
+    impact.time = time_;
     if (time_ > 0.0) {
-        best->on_a = flight_.in_world(best->on_a);
-        best->on_b = flight_.in_world(best->on_b);
+        impact.on_a = flight_.in_world(impact.on_a);
+        impact.on_b = flight_.in_world(impact.on_b);
     }
-    return best;
+    return impact;
 }
 
 }  // namespace crofton::convex

@@ -18,8 +18,9 @@ struct Mover {
 
 // Whether other parts of the two shapes are nearer to each other at the time of a hit than those that hit: by `margin`,
 // or along another normal by any amount. A corner that lands beside the edge of a tile is hardly farther from that edge
-// than from the tile under it.
-[[nodiscard]] bool is_nearer_elsewhere(const Mover& a, const Mover& b, const Impact& hit, double margin);
+// than from the tile under it. `farther`: how much farther they may be along another normal.
+[[nodiscard]] bool is_nearer_elsewhere(const Mover& a, const Mover& b, const Impact& hit, double margin,
+                                       double farther);
 
 // The contacts of two shapes at a time of their cast: of all pairs of parts of the two, and at the start also of either
 // with what is beside the other.
@@ -41,6 +42,8 @@ class ContactsAt {
     // first is b's.
     [[nodiscard]] bool passes(const ShapeAtPose& first, const Motion& motion_first, const ShapeAtPose& second,
                               const Motion& motion_second, bool flipped) const;
+    // The deepest of the two shapes' contacts over cracks that come together.
+    [[nodiscard]] std::optional<Impact> deepest_over_crack() const;
     // For a hit at this time: the deepest of the two shapes' contacts that come together and that no other contact
     // tells better. Normals are within an angle of the hit's, told by its cosine. If contacts of shapes beside them
     // tell all of them better: the deepest of those that come together, else nothing.
@@ -49,19 +52,26 @@ class ContactsAt {
   private:
     struct Contact {
         Part a, b;
+        Motion motion_a, motion_b;
         Impact impact;
         bool own;  // of the two shapes
-        bool slides;
+        bool slides = false;
+        bool over_crack = false;
         bool is_covered = false;  // slides behind a contact that comes together
         std::size_t behind = 0;   // contacts in its plane or behind it
     };
     static constexpr std::size_t kMost = 16;  // with different normals
+    // Of this time, with its points in the world.
+    [[nodiscard]] Impact in_world(Impact impact) const;
     using MovingPairVisitor =
         FunctionRef<void(const Part& a, const Motion& motion_a, const Part& b, const Motion& motion_b)>;
 
     void visit_all_pairs(FunctionRef<void(bool own)> begin, MovingPairVisitor visit) const;
     [[nodiscard]] std::optional<Impact> touch(const Part& a, const Part& b) const;
     void add(const Contact& contact);
+    [[nodiscard]] bool slides_past(const Contact& contact) const;
+    void close_cracks();
+    [[nodiscard]] bool is_free_face(const glm::dvec3& face) const;
     void find_covered();
     void count_behind();
     [[nodiscard]] bool is_behind(const ShapeAtPose& a, const ShapeAtPose& b, const Contact& contact,

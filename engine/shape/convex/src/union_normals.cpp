@@ -48,37 +48,6 @@ bool rises_above(const ShapeAtPose& shape, const glm::dvec3& point, const glm::d
     return glm::dot(way, direction) > kFlatSine * glm::length(way) + tolerance;
 }
 
-int face_count(const Shape& shape) {
-    switch (shape.kind()) {
-        case Kind::box:
-            return 6;
-        case Kind::hull:
-            return shape.hull()->face_count();
-        case Kind::triangle:
-        case Kind::cylinder:
-            return 2;
-        default:
-            return shape.kind() == Kind::cone ? 1 : 0;
-    }
-}
-
-// Outward; 0 of a triangle without area.
-glm::dvec3 face_normal(const ShapeAtPose& placed, int face) {
-    const Shape& shape = placed.shape;
-    const glm::dmat3& rotation = placed.pose.rotation;
-    glm::dvec3 local(0.0);
-    if (shape.kind() == Kind::box)
-        local[face / 2] = (face & 1) != 0 ? 1.0 : -1.0;
-    else if (shape.kind() == Kind::hull)
-        local = shape.hull()->face_normal(face);
-    else if (shape.kind() == Kind::triangle)
-        return (face == 0 ? 1.0 : -1.0) *
-               triangle_normal(rotation, {shape.vertex(0), shape.vertex(1), shape.vertex(2)});
-    else
-        local.y = face == 0 ? -1.0 : 1.0;
-    return local == glm::dvec3(0.0) ? local : turned_normal(rotation, local);
-}
-
 // Returns how far a point is beyond the plane of the hull's surface that it is farthest beyond; negative inside.
 double beyond_planes(const Hull& hull, const glm::dvec3& point) {
     const double *x = hull.plane_column(0), *y = hull.plane_column(1), *z = hull.plane_column(2),
@@ -96,6 +65,36 @@ double depth_of(const UnionNormals::Contact& contact) {
 }
 
 }  // namespace
+
+int face_count(const Shape& shape) {
+    switch (shape.kind()) {
+        case Kind::box:
+            return 6;
+        case Kind::hull:
+            return shape.hull()->face_count();
+        case Kind::triangle:
+        case Kind::cylinder:
+            return 2;
+        default:
+            return shape.kind() == Kind::cone ? 1 : 0;
+    }
+}
+
+glm::dvec3 face_normal(const ShapeAtPose& placed, int face) {
+    const Shape& shape = placed.shape;
+    const glm::dmat3& rotation = placed.pose.rotation;
+    glm::dvec3 local(0.0);
+    if (shape.kind() == Kind::box)
+        local[face / 2] = (face & 1) != 0 ? 1.0 : -1.0;
+    else if (shape.kind() == Kind::hull)
+        local = shape.hull()->face_normal(face);
+    else if (shape.kind() == Kind::triangle)
+        return (face == 0 ? 1.0 : -1.0) *
+               triangle_normal(rotation, {shape.vertex(0), shape.vertex(1), shape.vertex(2)});
+    else
+        local.y = face == 0 ? -1.0 : 1.0;
+    return local == glm::dvec3(0.0) ? local : turned_normal(rotation, local);
+}
 
 double flush_tolerance(const ShapeAtPose& a, const ShapeAtPose& b) {
     const glm::dvec3 place = glm::abs(a.pose.translation);

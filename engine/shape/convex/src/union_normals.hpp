@@ -11,6 +11,11 @@ namespace crofton::convex {
 // Faces of two shapes count as flush that are within this of each other: rounding of their sizes to float.
 [[nodiscard]] double flush_tolerance(const ShapeAtPose& a, const ShapeAtPose& b);
 
+// Of flat faces. A triangle has two.
+[[nodiscard]] int face_count(const Shape& shape);
+// Outward; 0 of a triangle without area.
+[[nodiscard]] glm::dvec3 face_normal(const ShapeAtPose& placed, int face);
+
 // Two lists of convex parts, and where parts of the first touch parts of the second. The least deep way out of one part
 // may lead into its neighbour. So a contact whose points the neighbours cover is none of the union's: its pair of parts
 // pushes along the normal of another contact that parts them as well, else along the face that is least deep and free.

@@ -62,6 +62,11 @@ class TouchedObjects {
     [[nodiscard]] bool has_others(std::uint32_t id) const {
         return count_ > 1 || (count_ == 1 && touched_[0]->id != id);
     }
+    [[nodiscard]] const convex::ShapeAtPose* find(std::uint32_t id) const {
+        for (std::size_t i = 0; i < count_; ++i)
+            if (touched_[i]->id == id) return &placed()[i];
+        return nullptr;
+    }
     [[nodiscard]] std::span<const convex::ShapeAtPose> placed() const {
         return {std::launder(reinterpret_cast<const convex::ShapeAtPose*>(placed_)), count_};
     }
@@ -203,8 +208,10 @@ Result<std::optional<ShapeHit>> World::cast(const convex::Shape& probe, const Ri
     if (first->time == 0.0 || options.ignore_initial_overlaps) return first;
     // The nearest of those that it touches then.
     std::optional<ShapeHit> nearest;
+    TouchedObjects at_hit;
     const RigidTransform there = convex::moved(pose, motion, first->time);
-    visit_touched(there, [&](std::uint32_t id, const world::QueryShape&, const convex::Impact& touch) {
+    visit_touched(there, [&](std::uint32_t id, const world::QueryShape& stand, const convex::Impact& touch) {
+        at_hit.add(id, stand.shape, *stand.pose);
         if (!is_in_the_way(touch, {probe, there}, motion, options.duration - first->time)) return;
         // What it slides on may seem to come nearer, within rounding.
         if (slides && glm::dot(touch.normal, first->normal) < kSameSurface) return;
@@ -213,9 +220,21 @@ Result<std::optional<ShapeHit>> World::cast(const convex::Shape& probe, const Ri
         if (nearest && touch.distance == nearest->distance && id > nearest->object.index) return;
         nearest = hit_of(id, touch);
     });
-    if (!nearest) return first;
-    nearest->time = first->time;
-    return nearest;
+    if (nearest) {
+        nearest->time = first->time;
+        first = nearest;
+    }
+    // Over a crack between flush objects the edges on both sides are nearest.
+    const convex::ShapeAtPose* const object = at_hit.find(first->object.index);
+    if (object == nullptr || !at_hit.has_others(first->object.index)) return first;
+    convex::CastOptions rest = options;
+    rest.duration -= first->time;
+    if (const auto touch = convex::touch_over_crack({probe, there}, motion, *object, at_hit.placed(), rest)) {
+        first->point = touch->on_b;
+        first->normal = touch->normal;
+        first->distance = touch->distance;
+    }
+    return first;
 }
 
 }  // namespace crofton

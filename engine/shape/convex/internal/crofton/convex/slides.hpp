@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Whether a cast begins as a slide.
+// Whether a cast begins as a slide, and what it lands on.
 #pragma once
 #include <crofton/convex/query.hpp>
+#include <optional>
 #include <span>
 
 namespace crofton::convex {
@@ -10,5 +11,11 @@ namespace crofton::convex {
 // not come together with that one, nor with another whose plane the contact lies behind.
 [[nodiscard]] bool slides_along(const ShapeAtPose& shape, const Motion& motion, std::span<const ShapeAtPose> touched,
                                 const CastOptions& options);
+
+// If a shape touches an object that rests, and others beside it, over a crack between them that is no wider than
+// rounding: its touch with the face that would be there without the crack, if it comes together with that.
+[[nodiscard]] std::optional<Impact> touch_over_crack(const ShapeAtPose& shape, const Motion& motion,
+                                                     const ShapeAtPose& object, std::span<const ShapeAtPose> touched,
+                                                     const CastOptions& options);
 
 }  // namespace crofton::convex
