@@ -138,6 +138,25 @@ class MarginScenes {
         return mesh;
     }
 
+    // Two triangles with a common edge, whose four corners lie nearly in one plane, and form mostly a convex shape.
+    TriangleMesh bent_square() {
+        TriangleMesh mesh;
+        const double sx = sample(width_), sy = sample(height_), z = random_.number(0.3, 0.7);
+        const double slope = some(1e-7, 3e-2), slope_x = slope * random_.number(-1, 1),
+                     slope_y = slope * random_.number(-1, 1);
+        const double bend = random_.index(4) == 0 ? 0.0 : sign() * some(1e-8, 1e-3);
+        const double reach = some(1.0, 30.0), first = random_.number(0.0, 6.3);
+        for (std::uint32_t i = 0; i < 4; ++i) {
+            const double a = first + 1.5708 * i + random_.number(-0.6, 0.6), r = reach * random_.number(0.3, 1.0);
+            const double x = next_to(std::floor(sx + r * std::cos(a)) + 0.5);
+            const double y = next_to(std::floor(sy + r * std::sin(a)) + 0.5);
+            add(mesh, {x, y, z + slope_x * (x - sx) + slope_y * (y - sy) + (i == 3 ? bend : 0.0)});
+        }
+        mesh.indices =
+            random_.index(2) == 0 ? Vector<std::uint32_t>{0, 1, 2, 0, 2, 3} : Vector<std::uint32_t>{2, 3, 0, 1, 2, 0};
+        return mesh;
+    }
+
     // A flat closed fan around a sample, of which one corner lies deep.
     TriangleMesh crown() {
         TriangleMesh mesh;

@@ -102,6 +102,13 @@ TEST_SUITE("depth/margins") {
         });
     }
 
+    TEST_CASE("two triangles nearly in one plane, which are drawn as one, hide no more than they cover") {
+        try_aimed(4000, 8, 40, [](Aim& aim) {
+            if (aim.random.index(4) == 0) aim.offset(1e6);
+            for (int i = 0; i < 6; ++i) aim.add(aim.meshes.bent_square(), 64);
+        });
+    }
+
     TEST_CASE("needles around a corner do not close an edge far away from it") {
         try_aimed(5000, 8, 40, [](Aim& aim) {
             for (int i = 0; i < 6; ++i) aim.add(aim.meshes.fan(0.0), 64);

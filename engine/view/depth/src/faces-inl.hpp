@@ -43,6 +43,7 @@ struct Faces {
         back = 8,
         closable = 16,  // and the two bits beyond: whether edge k may be closed
         always = 128,   // visible, whatever the tiles say
+        longest = 256,  // times the longest edge's number
     };
     alignas(32) std::int32_t flags[kCount];
 
@@ -56,11 +57,10 @@ struct Faces {
     alignas(32) float middle_x[kCount], middle_y[kCount];                     // a sample near the middle
     // nearness = base + across · (x − plane_x) + up · (y − plane_y)
     alignas(32) float across[kCount], up[kCount], plane_x[kCount], plane_y[kCount], base[kCount];
-    alignas(32) float below[kCount];                      // the picture's nearness is at most this much less
-    alignas(32) float above[kCount];                      // and at most this much more
-    alignas(32) float farthest[kCount], nearest[kCount];  // and never less than this, nor more
-    alignas(32) float steps[kCount];                      // what it may change by within the grid
-    alignas(32) float own_farthest[kCount];               // before closed edges add to it
+    alignas(32) float below[kCount];    // the picture's nearness is at most this much less
+    alignas(32) float above[kCount];    // and at most this much more
+    alignas(32) float nearest[kCount];  // and never more than this
+    alignas(32) float steps[kCount];    // what it may change by within the grid
 };
 
 // Depth differences across an edge that are not worth a hole there.
@@ -123,7 +123,6 @@ class FaceSetup {
         const Mask given = hn::Not(hn::RebindMask(d, equal));
         const Mask drawn = object_.one_sided ? hn::AndNot(back, given) : given;
         if (hn::AllFalse(d, drawn)) return hn::Store(hn::Zero(integers), integers, f.flags + i);
-        const Mask solid = hn::And(drawn, faced);
 
         set_rectangle(f, i, hn::Sub(low_x, move), hn::Add(high_x, move), hn::Sub(low_y, move), hn::Add(high_y, move));
         const VF third = hn::Set(d, 1.0f / 3.0f);
@@ -147,10 +146,8 @@ class FaceSetup {
         hn::Store(hn::IfThenElse(faced, z[0], nearest), d, f.base + i);
         const VF steps = hn::Mul(hn::Mul(hn::Set(d, 8.0f), move), l1(across, up));
         hn::Store(steps, d, f.steps + i);
-        // The bias moves the farthest vertex back as well.
-        const VF least = hn::Sub(hn::Sub(farthest, rounding), steps);
-        hn::Store(least, d, f.farthest + i);
-        hn::Store(least, d, f.own_farthest + i);
+        // Finite wherever the plane is asked.
+        const Mask solid = hn::And(drawn, hn::And(faced, hn::Lt(steps, hn::Set(d, 1e18f))));
         // The plane's own rounding, which narrow triangles magnify.
         const VF narrow = hn::Add(hn::Set(d, 1.0f), hn::Mul(hn::Mul(size, size), hn::Abs(inverse)));
         const VF plane =
@@ -167,8 +164,9 @@ class FaceSetup {
         for (int k = 0; k < 3; ++k) hn::Store(corners[k], d, f.corner[k] + i);
         for (int k = 0; k < 3; ++k) set_edge(f, i, k, number, x, y, move, front, faced);
 
-        const VF depth = hn::Max(hn::Sub(hn::Add(nearest, rounding), hn::Set(d, picture_.infinitely_far)),
-                                 hn::Sub(hn::Set(d, picture_.infinitely_far), least));
+        const VF far = hn::Set(d, picture_.infinitely_far);
+        const VF depth = hn::Max(hn::Sub(hn::Add(nearest, rounding), far),
+                                 hn::Sub(far, hn::Sub(hn::Sub(farthest, rounding), steps)));
         const Mask smooth = hn::And(solid, hn::Lt(steps, hn::Mul(hn::Set(d, kSmoothShare), depth)));
         Mask sharp[3];
         for (int k = 0; k < 3; ++k) sharp[k] = hn::Le(corners[k], hn::Set(d, kMaxCorner));
@@ -179,6 +177,9 @@ class FaceSetup {
         for (int k = 0; k < 3; ++k)
             flags = hn::Or(
                 flags, flag_where(hn::And(smooth, hn::And(sharp[k], sharp[k == 2 ? 0 : k + 1])), Faces::closable << k));
+        const Mask last = hn::Gt(lengths[2], hn::Max(lengths[0], lengths[1])), middle = hn::Gt(lengths[1], lengths[0]);
+        flags = hn::Or(flags, flag_where(last, 2 * Faces::longest));
+        flags = hn::Or(flags, flag_where(hn::AndNot(last, middle), Faces::longest));
         hn::Store(flags, DI(), f.flags + i);
     }
 

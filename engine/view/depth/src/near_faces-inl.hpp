@@ -138,7 +138,6 @@ class NearFaceSetup {
             depth_error_ + 0x1p-20f * (std::abs(f.base[i]) + slope * (picture_.half_width + picture_.half_height));
         f.steps[i] = 8.0f * move_ * slope;
         f.below[i] = rounding;
-        f.farthest[i] = f.own_farthest[i] = kNothing;
         limits.count = 0;
         return add_limit(limits, -inverse_w[0], -inverse_w[1], 1.0 / least_w_ - inverse_w[2]) &&
                add_limit(limits, -depth[0], -depth[1], picture_.near_share - depth[2] - double{4.0f * rounding}) &&

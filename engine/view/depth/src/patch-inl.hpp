@@ -47,16 +47,16 @@ class PatchDrawer {
             set_near_faces();
         else
             set_faces();
-        std::uint64_t visible = 0;
-        for (std::uint64_t left = drawn_; left != 0; left &= left - 1) {
-            const auto t = static_cast<std::uint32_t>(std::countr_zero(left));
-            if (draw(t)) visible |= std::uint64_t{1} << t;
-        }
-        return visible;
+        for (std::uint64_t left = drawn_; left != 0; left &= left - 1)
+            visit(static_cast<std::uint32_t>(std::countr_zero(left)));
+        return visible_;
     }
 
   private:
     [[nodiscard]] Faces& faces(std::uint32_t t) { return faces_[t / Faces::kCount]; }
+    static constexpr std::uint8_t kUnknown = 0xff;
+
+    static std::uint64_t bit_of(std::uint32_t t) { return std::uint64_t{1} << t; }
     static std::uint32_t lane(std::uint32_t t) { return t % Faces::kCount; }
 
     template <class Place>
@@ -129,18 +129,38 @@ class PatchDrawer {
         solid_ |= having(Faces::solid);
     }
 
-    // True if it may own a sample.
-    HWY_INLINE bool draw(std::uint32_t t) {
-        Faces& f = faces(t);
-        const bool always = (f.flags[lane(t)] & Faces::always) != 0;
-        if (always && !hides(t)) return true;
-        Rasterizer raster(picture_.tiles, picture_.infinitely_far, f, lane(t));
-        if (raster.covers_nothing()) return always;
-        if (!always && !raster.shows()) return false;
-        if (!hides(t)) return true;
-        close_surface();
-        if (hides(t)) raster.draw(limits_[t].lines, always ? limits_[t].count : 0, excluded_);
-        return true;
+    // Asks a triangle, and draws it if it shows. Two that are drawn as one are drawn when the second has been asked, if
+    // either shows: so strips in which only one of them shows have the same depth at each step.
+    HWY_INLINE void visit(std::uint32_t t) {
+        const bool shown = (faces(t).flags[lane(t)] & Faces::always) != 0 || shows(t);
+        if (shown) visible_ |= bit_of(t);
+        if (!hides(t)) return;
+        if (shown)
+            close_surface();
+        else if (!surface_is_closed_ || partners_[t] >= t)  // else the first of two shows
+            return;
+        if (hides(t) && partner_of(t) <= t) draw(t, partners_[t]);
+    }
+
+    // As one, if there is another.
+    HWY_INLINE void draw(std::uint32_t t, std::uint32_t other) {
+        Line lines[Rasterizer::kMaxLines];
+        std::uint32_t count = append_lines(t, other == t, lines);
+        if (other != t) {
+            count += append_lines(other, false, lines + count);
+            widen(t, other);
+        } else if (unclear_) {
+            for (std::uint32_t k = 0; k < limits_[t].count; ++k) lines[count++] = limits_[t].lines[k];
+        }
+        rasterizer(t).draw(lines, count, excluded_);
+    }
+
+    [[nodiscard]] HWY_INLINE Rasterizer rasterizer(std::uint32_t t) {
+        return {picture_.tiles, picture_.infinitely_far, faces(t), lane(t)};
+    }
+    [[nodiscard]] HWY_INLINE bool shows(std::uint32_t t) {
+        Rasterizer raster = rasterizer(t);
+        return !raster.covers_nothing() && raster.shows();
     }
 
     [[nodiscard]] bool hides(std::uint32_t t) const { return object_.hides && (solid_ >> t & 1) != 0; }
@@ -151,31 +171,104 @@ class PatchDrawer {
         surface_is_closed_ = true;
         close_edges();
         exclude_corners();
+        std::fill_n(partners_, patch_.triangle_count, kUnknown);
     }
 
     HWY_INLINE void close_edges() {
-        for (std::uint64_t left = solid_; left != 0; left &= left - 1) {
-            const auto t = static_cast<std::uint32_t>(std::countr_zero(left));
-            Faces& f = faces(t);
-            const std::int32_t flags = f.flags[lane(t)];
-            float widest = f.steps[lane(t)];
-            std::uint32_t closed = 0;
-            for (std::uint32_t k = 0; k < 3; ++k) {
-                const std::uint32_t across = patch_.blocks[t / Faces::kCount].neighbors[k][lane(t)];
-                if ((flags & Faces::closable << k) == 0 || across == ClusteredMesh::kNone) continue;
-                const Faces& g = faces(across / 4);
-                const std::uint32_t i = lane(across / 4);
-                if (((flags ^ g.flags[i]) & (Faces::front | Faces::back)) != 0) continue;
-                if ((g.flags[i] & Faces::closable << across % 4) == 0) continue;
-                closed |= 1u << k;
-                widest = std::max(widest, g.steps[i]);
-                f.farthest[lane(t)] = std::min(f.farthest[lane(t)], g.own_farthest[i]);
-                const bool right = f.high[k][lane(t)] == std::numeric_limits<float>::infinity();
-                (right ? f.low : f.high)[k][lane(t)] = f.at_x[k][lane(t)];
-            }
-            closed_[t] = static_cast<std::uint8_t>(closed);
-            f.below[lane(t)] += widest;
+        for (std::uint32_t b = 0; b * Faces::kCount < patch_.triangle_count; ++b)
+            for (std::size_t i = 0; i < Faces::kCount; i += hn::Lanes(DF())) close_edges_of(b, i);
+    }
+
+    // Of the triangles in the lanes from `i`.
+    HWY_INLINE void close_edges_of(std::uint32_t block, std::size_t i) {
+        const DF d;
+        const hn::RebindToSigned<DF> integers;
+        const auto all = [&](std::int32_t v) { return hn::Set(integers, v); };
+        Faces& f = faces_[block];
+        const auto flags = hn::Load(integers, f.flags + i);
+        VF widest = hn::Load(d, f.steps + i);
+        auto closed = hn::Zero(integers);
+        for (int k = 0; k < 3; ++k) {
+            const auto across = hn::PromoteTo(integers, hn::LoadU(hn::Rebind<std::uint8_t, decltype(integers)>(),
+                                                                  patch_.blocks[block].neighbors[k] + i));
+            // Where the neighbour's numbers are, counted from those of the first triangle.
+            const auto at = hn::Add(hn::Mul(hn::ShiftRight<5>(across), all(sizeof(Faces) / sizeof(float))),
+                                    hn::And(hn::ShiftRight<2>(across), all(Faces::kCount - 1)));
+            const auto others = hn::GatherIndex(integers, faces_[0].flags, at);
+            const VF steps = hn::GatherIndex(d, faces_[0].steps, at);
+            const auto both = hn::And(hn::ShiftRightSame(flags, k), hn::Shr(others, hn::And(across, all(3))));
+            const auto may_close = hn::Ne(hn::And(both, all(Faces::closable)), all(0));
+            const auto alike = hn::Eq(hn::And(hn::Xor(flags, others), all(Faces::front | Faces::back)), all(0));
+            const auto closes = hn::And(hn::Ne(across, all(ClusteredMesh::kNone)), hn::And(may_close, alike));
+            closed = hn::Or(closed, hn::IfThenElseZero(closes, all(1 << k)));
+            const auto here = hn::RebindMask(d, closes);
+            widest = hn::IfThenElse(here, hn::Max(widest, steps), widest);
+            const VF low = hn::Load(d, f.low[k] + i), high = hn::Load(d, f.high[k] + i), x = hn::Load(d, f.at_x[k] + i);
+            const auto right = hn::Eq(high, hn::Set(d, std::numeric_limits<float>::infinity()));
+            hn::Store(hn::IfThenElse(hn::And(here, right), x, low), d, f.low[k] + i);
+            hn::Store(hn::IfThenElse(hn::AndNot(right, here), x, high), d, f.high[k] + i);
         }
+        hn::Store(hn::Add(hn::Load(d, f.below + i), widest), d, f.below + i);
+        hn::Store(closed, integers, closed_ + block * Faces::kCount + i);
+    }
+
+    // The triangle with which `t` is drawn as one, or `t`: tiles along their common edge are then written once. The
+    // edge is the longest of both, they form a convex shape, and one plane is within the margins of both.
+    [[nodiscard]] HWY_INLINE std::uint32_t partner_of(std::uint32_t t) {
+        if (partners_[t] != kUnknown) return partners_[t];
+        partners_[t] = static_cast<std::uint8_t>(t);
+        const std::uint32_t k = longest_edge(t), across = patch_.blocks[t / Faces::kCount].neighbors[k][lane(t)];
+        if (unclear_ || (closed_[t] >> k & 1) == 0 || longest_edge(across / 4) != across % 4) return t;
+        const std::uint32_t other = across / 4;
+        const bool extended = t > other ? extends(t, k, other, across % 4) : extends(other, across % 4, t, k);
+        partners_[other] = static_cast<std::uint8_t>(extended ? t : other);
+        if (extended) partners_[t] = static_cast<std::uint8_t>(other);
+        return partners_[t];
+    }
+    [[nodiscard]] std::uint32_t longest_edge(std::uint32_t t) {
+        return static_cast<std::uint32_t>(faces(t).flags[lane(t)] / Faces::longest);
+    }
+
+    // Widens the margin of `t` so that its plane holds for the triangle across edge k, too; false if that is too much.
+    HWY_INLINE bool extends(std::uint32_t t, std::uint32_t k, std::uint32_t other, std::uint32_t other_k) {
+        const auto corner = [&](std::uint32_t of, std::uint32_t i) {
+            return std::uint32_t{patch_.blocks[of / Faces::kCount].corners[i % 3][lane(of)]};
+        };
+        const std::uint32_t from = corner(t, k), to = corner(t, k + 1), tip = corner(t, k + 2);
+        const std::uint32_t other_tip = corner(other, other_k + 2);
+        const float *const x = vertices_.x, *const y = vertices_.y;
+        const auto side = [&](std::uint32_t v) {
+            return (x[other_tip] - x[tip]) * (y[v] - y[tip]) - (x[v] - x[tip]) * (y[other_tip] - y[tip]);
+        };
+        if (!(side(from) * side(to) < 0.0f)) return false;
+        Faces& f = faces(t);
+        const Faces& g = faces(other);
+        const std::uint32_t i = lane(t), j = lane(other);
+        const float right = f.across[i] * (x[other_tip] - f.plane_x[i]), up = f.up[i] * (y[other_tip] - f.plane_y[i]);
+        const float off =
+            std::abs(vertices_.z[other_tip] - ((f.base[i] + right) + up)) + 0x1p-20f * (std::abs(right) + std::abs(up));
+        const float below = f.below[i] + g.below[j];
+        if (!(off <= below)) return false;
+        f.below[i] = below + off;
+        return true;
+    }
+
+    // But for the common edge of two.
+    HWY_INLINE std::uint32_t append_lines(std::uint32_t t, bool alone, Line* to) {
+        const Faces& f = faces(t);
+        const std::uint32_t i = lane(t), common = alone ? 3 : longest_edge(t);
+        std::uint32_t count = 0;
+        for (std::uint32_t k = 0; k < 3; ++k)
+            if (k != common) to[count++] = {f.per_row[k][i], f.at_y[k][i], f.low[k][i], f.high[k][i]};
+        return count;
+    }
+
+    HWY_INLINE void widen(std::uint32_t t, std::uint32_t other) {
+        Faces& f = faces(t);
+        const Faces& g = faces(other);
+        const std::uint32_t i = lane(t), j = lane(other);
+        f.x0[i] = std::min(f.x0[i], g.x0[j]), f.x1[i] = std::max(f.x1[i], g.x1[j]);
+        f.y0[i] = std::min(f.y0[i], g.y0[j]), f.y1[i] = std::max(f.y1[i], g.y1[j]);
     }
 
     // The samples at corners where the surface ends: where an edge there is not closed.
@@ -188,7 +281,8 @@ class PatchDrawer {
             const Faces& f = faces(t);
             for (std::uint32_t k = 0; k < 3; ++k) {
                 const std::uint8_t corner = block.corners[k][lane(t)];
-                const std::uint32_t closed = closed_[t] & (1u << k | 1u << (k == 0 ? 2 : k - 1));
+                const std::uint32_t closed =
+                    static_cast<std::uint32_t>(closed_[t]) & (1u << k | 1u << (k == 0 ? 2 : k - 1));
                 // If none is closed, both keep the distance.
                 if (closed != 0) radius_[corner] = std::max(radius_[corner], f.corner[k][lane(t)]);
                 if (!std::has_single_bit(closed) && closed != 0) continue;
@@ -230,7 +324,7 @@ class PatchDrawer {
         const std::int32_t x0 = first_sample(x - r, width), x1 = last_sample(x + r, width);
         const std::int32_t y0 = first_sample(y - r, height), y1 = last_sample(y + r, height);
         if (x0 > x1 || y0 > y1) return;
-        if (ends_[v] == 0) return take_farthest_around(v);
+        if (ends_[v] == 0) return take_steepest_around(v);
         for (std::int32_t j = y0; j <= y1; ++j)
             for (std::int32_t i = x0; i <= x1; ++i)
                 if (excluded_.count < ExcludedSamples::kMax)
@@ -240,16 +334,10 @@ class PatchDrawer {
     }
 
     // No triangle around the corner says that it is nearer than any other of them may be there.
-    void take_farthest_around(std::uint32_t v) {
-        float widest = 0.0f, farthest = std::numeric_limits<float>::infinity();
-        for_triangles_around(v, [&](Faces& f, std::uint32_t i) {
-            widest = std::max(widest, f.steps[i]);
-            farthest = std::min(farthest, f.own_farthest[i]);
-        });
-        for_triangles_around(v, [&](Faces& f, std::uint32_t i) {
-            f.below[i] += widest;
-            f.farthest[i] = std::min(f.farthest[i], farthest);
-        });
+    void take_steepest_around(std::uint32_t v) {
+        float widest = 0.0f;
+        for_triangles_around(v, [&](Faces& f, std::uint32_t i) { widest = std::max(widest, f.steps[i]); });
+        for_triangles_around(v, [&](Faces& f, std::uint32_t i) { f.below[i] += widest; });
     }
     template <class Use>
     void for_triangles_around(std::uint32_t v, const Use& use) {
@@ -266,8 +354,9 @@ class PatchDrawer {
     const PatchData& patch_;
     const bool unclear_;  // in clip coordinates
     const ClipErrors errors_;
-    std::uint64_t drawn_ = 0, solid_ = 0;          // triangles
-    std::uint8_t closed_[Cluster::kMaxTriangles];  // edges of solid ones, one bit each
+    std::uint64_t drawn_ = 0, solid_ = 0, visible_ = 0;        // triangles
+    alignas(64) std::int32_t closed_[Cluster::kMaxTriangles];  // edges, one bit each
+    std::uint8_t partners_[Cluster::kMaxTriangles];
     bool surface_is_closed_ = false;
     ExcludedSamples excluded_;
     PatchVertices vertices_;

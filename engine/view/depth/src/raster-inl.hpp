@@ -81,16 +81,12 @@ class Rasterizer {
         return false;
     }
 
-    // Raises the tiles where the triangle and `more` lines leave samples that are surely covered.
-    HWY_INLINE void draw(const Line* more, std::uint32_t more_count, const ExcludedSamples& excluded) {
-        Line lines[kMaxLines];
-        for (std::uint32_t k = 0; k < 3; ++k)
-            lines[k] = {f_.per_row[k][i_], f_.at_y[k][i_], f_.low[k][i_], f_.high[k][i_]};
-        for (std::uint32_t k = 0; k < more_count; ++k) lines[3 + k] = more[k];
+    // Raises the tiles where the lines leave samples: they are surely covered.
+    HWY_INLINE void draw(const Line* lines, std::uint32_t count, const ExcludedSamples& excluded) {
         // Of the whole triangle, so that what is drawn does not depend on which tiles are here.
         const bool wide = f_.x1[i_] / 8 - f_.x0[i_] / 8 > kNarrow;
         for (std::int32_t ty = y0_ / 8; ty <= y1_ / 8; ++ty) {
-            find_band(ty, lines, 3 + more_count);
+            find_band(ty, lines, count);
             at_row_ = plane_at_row(ty);
             spares_ = excluded.may_be_in_row(ty);
             Interval touched{x0_ / 8, x1_ / 8};
@@ -260,8 +256,7 @@ class Rasterizer {
             const std::size_t t = row + static_cast<std::size_t>(tx);
             const VF x = hn::Add(hn::Mul(steps_from(static_cast<float>(tx)), hn::Set(d, 8.0f)), hn::Set(d, 4.0f));
             const VF middle = hn::Add(up, hn::Mul(hn::Set(d, f_.across[i_]), hn::Sub(x, hn::Set(d, f_.plane_x[i_]))));
-            const VF lower =
-                hn::Max(hn::Sub(hn::Sub(middle, spread), hn::Set(d, f_.below[i_])), hn::Set(d, f_.farthest[i_]));
+            const VF lower = hn::Sub(hn::Sub(middle, spread), hn::Set(d, f_.below[i_]));
             const VF far = hn::Abs(hn::Sub(middle, hn::Set(d, far_)));
             const auto within = hn::FirstN(d, count);
             const auto flat = hn::And(within, hn::Lt(spread, hn::Mul(far, hn::Set(d, 0x1p-5f))));
@@ -328,7 +323,7 @@ class Rasterizer {
     HWY_INLINE void write_tile(std::int32_t tx, std::size_t t) {
         const DF d;
         float* const pixels = tiles_.pixels + t * kTilePixels;
-        const VF below = hn::Set(d, f_.below[i_]), farthest = hn::Set(d, f_.farthest[i_]);
+        const VF below = hn::Set(d, f_.below[i_]);
         VF least = hn::Set(d, std::numeric_limits<float>::infinity());
         for (std::size_t i = 0; i < kTile; i += hn::Lanes(d)) {
             const VF x = steps_from(static_cast<float>(8 * tx) + 0.5f + static_cast<float>(i));
@@ -336,7 +331,7 @@ class Rasterizer {
             for (std::size_t row = 0; row < kTile; ++row) {
                 float* const pixel = pixels + row * kTile + i;
                 const VF before = kFirst ? hn::Set(d, kNothing) : hn::Load(d, pixel);
-                const VF lower = hn::Max(hn::Add(depth, hn::Set(d, ups_[row])), farthest);
+                const VF lower = hn::Add(depth, hn::Set(d, ups_[row]));
                 const auto within = hn::And(hn::Ge(x, hn::Set(d, low_[row])), hn::Le(x, hn::Set(d, high_[row])));
                 const VF after = hn::IfThenElse(within, hn::Max(before, lower), before);
                 hn::Store(after, d, pixel);
