@@ -98,6 +98,56 @@ int check_floor(RandomShapes& random, const Floor& floor, const Sliders& sliders
 }  // namespace
 
 TEST_SUITE("convex/union_normals") {
+    // Walls that overlap on a block, and movers deep in them, each with another mover near.
+    TEST_CASE("a neighbour that stands near, with a gap, changes no contact") {
+        RandomShapes random(91);
+        const Sliders sliders(random);
+        const auto block = [](const glm::dvec3& half, const glm::dvec3& middle) {
+            return CompoundChild{Shape::box(glm::vec3(half)).value(), at(middle)};
+        };
+        std::size_t checked = 0;
+        for (int round = 0; round < 200; ++round) {
+            std::vector<CompoundChild> parts{block({60, 25, 60}, {0, -25, 0})};
+            for (int i = round % 3; i >= 0; --i) {
+                const double height = random.number(0.4, 1.5);
+                const glm::dvec3 half(random.number(0.4, 1.5), height, random.number(0.4, 1.5));
+                parts.push_back(
+                    block(half, {random.number(-1, 1), (round + i) % 2 ? height : -height, random.number(-1, 1)}));
+            }
+            const Compound compound = Compound::build(parts).value();
+            const Shape walls = Shape::compound(compound);
+            const RigidTransform frame{round % 2 ? random.rotation() : glm::dmat3(1.0),
+                                       round % 3 == 1 ? 1e3 * random.direction() : glm::dvec3(0.0)};
+            std::vector<RigidTransform> poses;
+            for (const Shape& shape : sliders.shapes) {
+                const glm::dmat3 turn = random.index(3) == 0 ? random.rotation() : around_y(random.number(0, 6.2));
+                const double y = below(shape, turn) - std::pow(10.0, -random.number(1.7, 4.0));
+                const double x = random.number(-2, 2), z = random.number(-2, 2);
+                poses.push_back(placed_in(frame, {turn, {x, y, z}}));
+            }
+            std::vector<ShapeAtPose> movers;
+            for (std::size_t i = 0; i < poses.size(); ++i) movers.push_back({sliders.shapes[i], poses[i]});
+            for (std::size_t i = 0; i < movers.size(); ++i)
+                for (std::size_t j = 0; j < movers.size(); ++j) {
+                    if (i == j || !(distance(movers[i], movers[j]).distance > 1e-4)) continue;
+                    const ShapeAtPose a{walls, frame};
+                    const std::span near(&movers[j], 1);
+                    Manifolds alone, beside;
+                    contact_manifolds(a, movers[i], {}, alone);
+                    contact_manifolds(a, movers[i], Beside{{}, near}, {}, beside);
+                    CHECK(alone.all().size() == beside.all().size());
+                    for (const Manifold& m : alone.all()) {
+                        const auto found =
+                            std::find_if(beside.all().begin(), beside.all().end(), [&](const Manifold& n) {
+                                return glm::distance(m.normal, n.normal) < 1e-6 && std::abs(m.depth - n.depth) < 1e-7;
+                            });
+                        CHECK(found != beside.all().end());
+                        ++checked;
+                    }
+                }
+        }
+        CHECK(checked > 10000);
+    }
     TEST_CASE("over strips of boxes that lie flush, also with T-junctions, every contact is that of one plane") {
         RandomShapes random(61);
         const Sliders sliders(random);

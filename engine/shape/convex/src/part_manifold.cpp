@@ -156,16 +156,19 @@ class ManifoldFinder {
             for (std::uint32_t j = own.parts[1]; j < all.parts[1]; ++j) add_flush_contact(i, j, nullptr);
         flush.apply(wanted);
     }
+    // Whether they are apart, or overlap, by no more than rounding to float. Shapes that only stand near have a gap,
+    // into which other shapes may be pushed.
     [[nodiscard]] static bool are_flush(const ShapeAtPose& a, const ShapeAtPose& b) {
         if (has_surfaces(b.shape) || is_half_space(b)) return false;
         const glm::dvec3 offset = b.pose.translation - a.pose.translation;
         const double reach = (a.shape.core_radius() + a.shape.radius()) + (b.shape.core_radius() + b.shape.radius());
-        if (glm::dot(offset, offset) > reach * reach * (1.0 + 1e-12)) return true;
         const double flush = flush_tolerance(a, b);
+        if (glm::length(offset) > (reach + flush) * (1.0 + 1e-12)) return false;
         const bool boxes = is_solid_box(a.shape) && is_solid_box(b.shape) && a.shape.radius() + b.shape.radius() == 0.0;
-        if (boxes)
-            if (const std::optional<bool> more = boxes_overlap_by_more(Pair(a, b), flush)) return !*more;
-        return !are_deep(a, b, flush) && !(penetration(a, b).depth > flush);
+        const std::optional<bool> more = boxes ? boxes_overlap_by_more(Pair(a, b), flush) : std::nullopt;
+        if (more ? *more : are_deep(a, b, flush)) return false;
+        if (!intersects(a, b)) return distance(a, b).distance <= flush;
+        return more || !(penetration(a, b).depth > flush);
     }
     // Whether convex shapes are proved to overlap by more than `flush`, which takes a part of the time of their depth.
     [[nodiscard]] static bool are_deep(const ShapeAtPose& a, const ShapeAtPose& b, double flush) {
