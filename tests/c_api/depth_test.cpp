@@ -167,7 +167,7 @@ TEST_SUITE("capi/depth") {
         }
         const DepthCuller culler = make_depth_culler();
         crofton::depth::DepthCuller same;
-        for (int round = 0; round < 6; ++round) {
+        for (std::size_t round = 0; round < 6; ++round) {
             const auto depth = std::array{crofton::DepthRange::reversed_zero_to_one, crofton::DepthRange::zero_to_one,
                                           crofton::DepthRange::minus_one_to_one}[round / 2];
             const bool by_jobs = round % 2 == 1;
