@@ -11,8 +11,7 @@
       <!-- table NAME --> and <!-- end -->.
       A table with "plain": true shows its CSV's own rows, which another command has written. One with "columns" has a
       CSV and an instruction set for each column; "cold": true takes each row's benchmark with cold caches. A row's "scene"
-      is added to the name of the CSV: cull_city.csv. A row's "csv" stands for the table's. "texts" names columns whose cells
-      are in the rows, such as "goal".
+      is added to the name of the CSV: cull_city.csv.
   bench/results.py check
       as tables, but writes nothing and exits with 1 where a page would change: the test of the docs.
 
@@ -50,7 +49,7 @@ def specifications():
 
 def csv_of(table, row, column=None):
     """The name of the CSV that a row's benchmark is in."""
-    name = (column or {}).get("csv", row.get("csv", table.get("csv")))
+    name = (column or {}).get("csv", table["csv"])
     return f"{name}_{row['scene']}" if "scene" in row else name
 
 
@@ -140,11 +139,10 @@ def plain_table(path):
 
 
 def table_of(table, times):
-    """The lines of a table: least to median of each row, per instruction set, how many times as long the other takes, and the
-    row's texts, such as its goal."""
-    sets, texts = table["instruction_sets"], table.get("texts", [])
+    """The lines of a table: least to median of each row, per instruction set, and how many times as long the other takes."""
+    sets = table["instruction_sets"]
     others = any(row.get("beside") for row in table["rows"])
-    head = [table["title"]] + [f"{table['unit']}, {name}" for name in sets] + ([table["beside"]] if others else []) + texts
+    head = [table["title"]] + [f"{table['unit']}, {name}" for name in sets] + ([table["beside"]] if others else [])
     lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
     for row in table["rows"]:
         scale = 1.0 / row["divide_by"]
@@ -154,7 +152,6 @@ def table_of(table, times):
             ratios = [times[beside, name][0] / times[row["benchmark"], name][0] for name in sets] if beside else []
             shown = (lambda ratio: f"{ratio:.2f}") if table.get("fine_ratios") else number
             cells.append(f"{' / '.join(shown(ratio) for ratio in ratios)} ×" if ratios else "")
-        cells += [row.get(text, "") for text in texts]
         lines.append("| " + " | ".join(cells) + " |")
     return lines
 
@@ -183,15 +180,11 @@ def write_tables(check):
         path = ROOT / table["page"]
         page = path.read_text(encoding="utf-8")
         folder = RESULTS / table["processor"]
+        path_of_csv = folder / f"{table['csv']}.csv"
         if "columns" in table:
             lines = columns_table(table, folder)
-        elif table.get("plain"):
-            lines = plain_table(folder / f"{table['csv']}.csv")
         else:
-            times = {}
-            for csv_name in sorted({csv_of(table, row) for row in table["rows"]}):
-                times |= read(folder / f"{csv_name}.csv")
-            lines = table_of(table, times)
+            lines = plain_table(path_of_csv) if table.get("plain") else table_of(table, read(path_of_csv))
         marked = re.compile(rf"(<!-- table {re.escape(name)} -->\n).*?(<!-- end -->)", re.S)
         if len(marked.findall(page)) != 1:
             sys.exit(f"{table['page']} must have the markers of the table {name} once")
