@@ -326,7 +326,8 @@ TEST_SUITE("cli/frames") {
                 CHECK(again["frames"][i][key] == here["frames"][i][key]);
         const CliRun live = run_cli(fly + "- --real-time");
         REQUIRE_MESSAGE(live.status == 0, live.err);
-        for (const json& frame : live.json()["frames"]) {
+        const json live_frames = live.json()["frames"];
+        for (const json& frame : live_frames) {
             CHECK(frame["regions"]["came"].get<int>() <= 1);
             CHECK(frame["regions"]["wait_us"].get<double>() < 1e5);
         }
