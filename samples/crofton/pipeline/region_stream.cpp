@@ -62,8 +62,8 @@ class MeshLibrary {
     std::unordered_map<std::uint64_t, std::vector<std::weak_ptr<const RegionDrawMesh>>> meshes_;
 };
 
-Result<Region> prepare(const bake::BakedScene& scene, bool meshes) {
-    if (meshes) return bake::prepare_region(scene, {.triangles = false, .collides_with = 0, .region = {}});
+Result<Region> prepare(bake::BakedScene&& scene, bool meshes) {
+    if (meshes) return bake::prepare_region(std::move(scene), {.triangles = false, .collides_with = 0, .region = {}});
     std::vector<RegionObject> objects(scene.instances().size());
     for (std::uint32_t i = 0; i < objects.size(); ++i) {
         objects[i].bound = scene.tree().boxes()[i];
@@ -81,7 +81,7 @@ Result<std::unique_ptr<StreamedRegion>> load(const std::string& folder, const ba
     const auto bytes =
         bake::MappedFile::open(path, {.access = bake::FileAccess::read, .largest = options.largest_file});
     if (!bytes) return tl::unexpected(bytes.error());
-    const auto scene = bake::BakedScene::from_memory(bytes->bytes());
+    auto scene = bake::BakedScene::from_memory(bytes->bytes());
     if (!scene) return fail(scene.error().code, scene.error().item, path + ": " + scene.error().message);
     if (scene->instances().size() != file.objects || bytes->bytes().size() != file.bytes)
         return fail(ErrorCode::parse, kNoItem, path + ": is not the file that the index names");
@@ -92,7 +92,7 @@ Result<std::unique_ptr<StreamedRegion>> load(const std::string& folder, const ba
         result->mesh_of.push_back(instance.mesh);
         result->transforms.push_back(instance.node == scene::kNone ? Transform() : scene->nodes()[instance.node].world);
     }
-    auto region = prepare(*scene, options.meshes);
+    auto region = prepare(std::move(*scene), options.meshes);
     if (!region) return fail(region.error().code, region.error().item, path + ": " + region.error().message);
     result->region = std::move(*region);
     return result;
