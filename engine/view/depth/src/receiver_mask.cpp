@@ -14,7 +14,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 // Triangles and parts of them that one call may split: beyond it, what is left is marked as it is.
 constexpr std::size_t kMaxSplits = std::size_t{1} << 14;
 constexpr std::uint32_t kMaxLevel = 28;
-// Of parts whose place in the map is not known, as the light is in their midst.
+// The same for parts whose place in the map is not known, because the light is among them.
 constexpr std::uint32_t kMaxUnclearLevel = 12;
 // Parts that are so small are split no further: as a share of the map, and in pixels of the camera's picture.
 constexpr std::uint32_t kCoarseShare = 32;
@@ -26,10 +26,6 @@ Projection whole(const PictureData& picture) {
     return {0,         static_cast<std::uint16_t>(picture.tiles.width - 1),
             0,         static_cast<std::uint16_t>(picture.tiles.height - 1),
             kInfinity, 0.0f};
-}
-
-bool covers_few(const Projection& p) {
-    return std::max(p.x1 - p.x0, p.y1 - p.y0) < kFewPixels;
 }
 
 // A triangle as a box: a flat one, of twice its area.
@@ -61,19 +57,24 @@ bool is_within(const Projection& p, std::int32_t samples) {
     return p.x1 - p.x0 < samples && p.y1 - p.y0 < samples;
 }
 
+// Homogeneous, in double.
+std::array<double, 4> clip_of(const ObjectData& object, const glm::dvec3& point) {
+    std::array<double, 4> clip;
+    for (std::size_t i = 0; i < 4; ++i)
+        clip[i] = double{object.columns[0][i]} * point.x + double{object.columns[1][i]} * point.y +
+                  (double{object.columns[2][i]} * point.z + double{object.columns[3][i]});
+    return clip;
+}
+
 // The edge from corner k to the next, that is the longest in the picture; where a corner is behind the eye, in space.
 std::size_t longest_edge(const PictureData& picture, const ObjectData& object,
                          const std::array<glm::dvec3, 3>& corners) {
     std::array<glm::dvec2, 3> places;
     bool before = true;
     for (std::size_t k = 0; k < 3; ++k) {
-        const auto row = [&](std::size_t i) {
-            return double{object.columns[0][i]} * corners[k].x + double{object.columns[1][i]} * corners[k].y +
-                   (double{object.columns[2][i]} * corners[k].z + double{object.columns[3][i]});
-        };
-        const double w = row(3);
-        before = before && w > 0.0;
-        places[k] = {row(0) / w * double{picture.half_width}, row(1) / w * double{picture.half_height}};
+        const std::array<double, 4> clip = clip_of(object, corners[k]);
+        before = before && clip[3] > 0.0;
+        places[k] = {clip[0] / clip[3] * double{picture.half_width}, clip[1] / clip[3] * double{picture.half_height}};
     }
     std::size_t longest = 0;
     double most = -1.0;
@@ -91,10 +92,7 @@ float slope_of(const PictureData& picture, const ObjectData& object, const std::
     std::array<glm::dvec3, 3> points;  // pixels · w, and w
     std::array<double, 3> depths, lengths;
     for (std::size_t k = 0; k < 3; ++k) {
-        std::array<double, 4> clip;
-        for (std::size_t i = 0; i < 4; ++i)
-            clip[i] = double{object.columns[0][i]} * corners[k].x + double{object.columns[1][i]} * corners[k].y +
-                      (double{object.columns[2][i]} * corners[k].z + double{object.columns[3][i]});
+        const std::array<double, 4> clip = clip_of(object, corners[k]);
         points[k] = {clip[0] * double{picture.half_width}, clip[1] * double{picture.half_height}, clip[3]};
         depths[k] = clip[2];
         lengths[k] = glm::length(points[k]);
@@ -229,9 +227,9 @@ void ReceiverMask::add_pieces() {
                 mark(in_map);
                 continue;
             }
-            const bool ends = in_map.is_unclear()
-                                  ? level >= kMaxUnclearLevel
-                                  : level >= kMaxLevel || covers_few(in_picture) || is_within(in_map, coarse_);
+            const bool ends = in_map.is_unclear() ? level >= kMaxUnclearLevel
+                                                  : level >= kMaxLevel || is_within(in_picture, kFewPixels) ||
+                                                        is_within(in_map, coarse_);
             if (!ends && splits_left_ > 0)
                 split(pieces_[i], in_picture, level);
             else if (in_map.is_unclear())
@@ -330,11 +328,7 @@ ReceiverMask::MapTriangle ReceiverMask::triangle_in_map(const Piece& piece, cons
     MapTriangle t;
     double least_w = std::numeric_limits<double>::infinity(), deepest = 0.0;
     for (std::size_t k = 0; k < 3; ++k) {
-        std::array<double, 4> clip;
-        for (std::size_t i = 0; i < 4; ++i)
-            clip[i] = double{in_map_.columns[0][i]} * piece.corners[k].x +
-                      double{in_map_.columns[1][i]} * piece.corners[k].y +
-                      (double{in_map_.columns[2][i]} * piece.corners[k].z + double{in_map_.columns[3][i]});
+        const std::array<double, 4> clip = clip_of(in_map_, piece.corners[k]);
         t.corners[k] = {clip[0] / clip[3] * double{map_.half_width} + double{map_.middle_x},
                         clip[1] / clip[3] * double{map_.half_height} + double{map_.middle_y}, clip[2] / clip[3]};
         least_w = std::min(least_w, clip[3]);

@@ -228,8 +228,8 @@ void MovedTreesQuery::find_visible(std::span<const Asked> trees, CullMode mode) 
         state.first_word[t + 1] = state.first_word[t] + words_of(*trees[t].tree);
     }
     const std::size_t words = state.first_word[trees.size()] + 1;  // one more for the kernel
-    std::uint32_t *const inside = room(state.inside, 64 * words), *const straddling =
-                                                                      room(state.straddling, 64 * words);
+    std::uint32_t* const inside = room(state.inside, 64 * words);
+    std::uint32_t* const straddling = room(state.straddling, 64 * words);
     const State::Found found = state.ask(trees, mode, first_ids, inside, straddling);
     state.bits.assign(2 * words, 0);
     std::uint64_t *const seen = state.bits.data(), *const marked = seen + words;
