@@ -32,7 +32,7 @@ using namespace crofton::convex;
 constexpr int kFrames = 8, kShapes = 1000;
 constexpr std::uint32_t kSide = 1025, kTerrainSide = 257;
 
-// What the shapes meet: a mesh, a height field, or the same heights as a mesh of 131,072 triangles.
+// The surfaces: a mesh, a height field, and the same heights as a mesh of 131,072 triangles.
 enum class Ground { bunny, heights, terrain };
 
 // Where a shape stands on a surface, sunk in by 1 % of its size.

@@ -97,7 +97,7 @@ std::vector<Objects> objects_along(assets::SceneSource& source, const pipeline::
     return frames;
 }
 
-// What shadow maps of a sun need, of 2048 x 2048 texels: one over the scene, and one over what is near the camera.
+// Times the casters of a sun's shadow maps of 2048 x 2048 texels: one over the scene, one near the camera.
 void cast_shadows(assets::SceneSource& source, const pipeline::SceneClusters& clusters, const Aabb& focus,
                   const std::vector<Camera>& cameras, const std::vector<Objects>& frames,
                   const depth::PictureView& picture, int repeats) {

@@ -39,7 +39,7 @@ crofton_status add_object(const crofton_depth_object& given, const char* functio
     return CROFTON_OK;
 }
 
-// What both of a culler's questions are given, and where the answer goes.
+// The arguments that find_visible and find_casters share.
 struct Asked {
     const crofton_depth_object* objects;
     std::size_t object_count;

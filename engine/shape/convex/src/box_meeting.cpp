@@ -43,7 +43,7 @@ bool are_parallel(const glm::dvec3& u, const glm::dvec3& v) {
            is_difference_zero(u.x, v.y, u.y, v.x);
 }
 
-// Of two boxes, along a coordinate: where their centers are, and the edges that lead along it.
+// Tests overlap along a coordinate exactly, for boxes with centers at a and b and with half extents along it.
 bool overlap_along_line(double a, double b, double half_a, double half_b) {
     const double low = std::min(a, b), high = std::max(a, b);
     const auto apart = detail::two_sum(high, -low), radius = detail::two_sum(half_a, half_b);

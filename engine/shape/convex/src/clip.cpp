@@ -15,7 +15,7 @@ struct ClipCorner {
     int before, after;
 };
 
-// Of the size: corners that are nearer to a side lie on it, so that a polygon as narrow is an edge.
+// Corners nearer to a side than this share of the size lie on it, so that a polygon as narrow counts as an edge.
 constexpr double kOnSide = 0x1p-44;
 
 // Corners within `near` of the side are on it. Returns −1 − the number of corners in `to`, or `count` with nothing

@@ -30,7 +30,7 @@ bool visit_pairs(const ShapeAtPose& a, const ShapeAtPose& b, double margin, Pair
     return visit_parts_near(a, b, margin, with_a);
 }
 
-// What to compare the distances of other parts with.
+// Other parts are nearer if their distance is below these.
 struct Limits {
     double one_way, other_way;  // along the hit's normal, along other normals
 };
@@ -138,8 +138,8 @@ bool ContactsAt::slides_past(const Contact& contact) const {
     return flight.closing(contact.impact.normal)(left) < std::max(contact.impact.distance, slack);
 }
 
-// The corners of parts are floats, so that flush parts may have cracks between them. What is over a crack is nearest to
-// the edges there. It touches a face that it is beside by no more than rounding, if no part is beyond that.
+// Corners of parts are floats, so flush parts may have cracks between them. A shape over a crack is nearest to the
+// edges there. It touches a face that lies beside it by no more than rounding, unless a part overlaps along that face.
 void ContactsAt::close_cracks() {
     if (count_ < 2) return;
     for (std::size_t i = 0; i < count_; ++i) {

@@ -52,7 +52,7 @@ Obb no_box() {
     return box;
 }
 
-// Of what is no collider.
+// The filter of an object that does not collide.
 constexpr collide::CollisionFilter kInNoPair{0, 0};
 
 bool comes_before(const Contact& a, const IdPair& b) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A vector for much data that few elements are appended to at a time.
+// A large vector that grows by a few elements at a time.
 #pragma once
 #include <algorithm>
 #include <crofton/core/memory.hpp>
@@ -29,8 +29,8 @@ class GrowingVector {
     [[nodiscard]] const T& operator[](std::size_t i) const { return values_[i]; }
     [[nodiscard]] std::span<const T> view() const { return values_; }
 
-    // To change an element until the next settle(). Several threads may change different ones after edit_all(), until
-    // the next append().
+    // Returns an element to write, until the next settle(). After edit_all(), several threads may write different
+    // elements, until the next append().
     [[nodiscard]] T& edit(std::size_t i) {
         if (i < next_.size()) note(i);
         return values_[i];

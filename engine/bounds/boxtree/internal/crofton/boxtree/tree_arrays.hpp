@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What queries read of a tree that does not change.
+// The arrays that queries of an unchanging tree read.
 #pragma once
 #include <crofton/boxtree/structure.hpp>
 
