@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <utility>
 
 namespace crofton::assets {
 namespace {
@@ -14,6 +15,10 @@ constexpr std::size_t kMostCornersOfLightest = 256;
 constexpr std::uint64_t kWorkPerFace = 1'000'000;
 // Turns above this are certain, whatever the projection has rounded. Relative to the squared size.
 constexpr double kLeastTurn = 1e-12;
+// Places nearer than this share of the face's size may be one, as of coordinates with seven digits; and of how many
+// corners at most that is looked at, since it takes the square of their number.
+constexpr double kSamePlace = 1e-6;
+constexpr std::size_t kMostWelded = 2000;
 
 // Twice the area times the unit normal of the outline (Newell; Sutherland, Sproull and Schumacker 1974).
 glm::dvec3 newell_normal(std::span<const glm::dvec3> corners) {
@@ -79,7 +84,7 @@ FaceCut FaceTriangulator::cut(std::span<const glm::dvec3> corners) {
     if (triangulate()) return FaceCut::triangulated;
     // Rounding may have made edges cross that touch.
     drop_axis(scaled_, normal, polygon_.points);
-    if (triangulate()) return FaceCut::triangulated;
+    if (triangulate() || weld_and_triangulate()) return FaceCut::triangulated;
     fan(corners.size());
     return FaceCut::no_polygon;
 }
@@ -112,6 +117,42 @@ bool FaceTriangulator::triangulate() {
     options.work = kWorkPerFace;
     if (polygon_.points.size() > kMostCornersOfLightest) options.method = triangulate::Method::delaunay;
     return triangulator_.triangulate(polygon_, options, result_).has_value();
+}
+
+bool FaceTriangulator::weld_and_triangulate() {
+    Vector<glm::dvec2> p = polygon_.points;
+    const std::size_t n = p.size();
+    if (n > kMostWelded) return false;
+    double size = 0.0;
+    for (const glm::dvec2& q : p) size = std::max({size, std::abs(q.x - p[0].x), std::abs(q.y - p[0].y)});
+    const double near = kSamePlace * size;
+    for (std::size_t i = 1; i < n; ++i)
+        for (std::size_t j = 0; j < i && p[i] != p[j]; ++j)
+            if (glm::distance(p[i], p[j]) <= near) p[i] = p[j];
+    polygon_.points.clear();
+    corner_of_.clear();
+    std::vector<std::pair<double, std::uint32_t>> on_side;  // how far along it, and which corner
+    for (std::uint32_t i = 0; i < n; ++i) {
+        const glm::dvec2 a = p[i], b = p[(i + 1) % n], along = b - a;
+        const double squared = glm::dot(along, along);
+        on_side.assign(1, {0.0, i});
+        for (std::uint32_t k = 0; k < n; ++k) {
+            const double t = glm::dot(p[k] - a, along) / squared;  // NaN where a is b
+            if (t > 0.0 && t < 1.0 && p[k] != a && p[k] != b && glm::distance(p[k], a + t * along) <= near)
+                on_side.emplace_back(t, k);
+        }
+        std::sort(on_side.begin(), on_side.end());
+        for (const auto& [t, k] : on_side) {
+            if (t > 0.0 && p[k] == polygon_.points.back()) continue;
+            polygon_.points.push_back(p[k]);
+            corner_of_.push_back(k);
+        }
+    }
+    polygon_.ring_ends.assign(1, static_cast<std::uint32_t>(polygon_.points.size()));
+    if (!triangulate()) return false;
+    for (auto& triangle : result_.triangles)
+        for (std::uint32_t& corner : triangle) corner = corner_of_[corner];
+    return true;
 }
 
 }  // namespace crofton::assets

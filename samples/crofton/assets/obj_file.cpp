@@ -4,8 +4,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
+#include <iterator>
 #include <map>
 #include <string_view>
+#include <system_error>
+#include <type_traits>
 
 #include "assets/face_triangles.hpp"
 #include "assets/file.hpp"
@@ -15,12 +19,19 @@
 namespace crofton::assets {
 namespace {
 
-// Finite numbers only.
+// Finite numbers only. What is too small for a Number is 0.
 template <class Number>
 bool parse(std::string_view word, Number& value) {
     if (!word.empty() && word.front() == '+') word.remove_prefix(1);
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    return error == std::errc{} && end == word.data() + word.size() && std::isfinite(value);
+    if (end != word.data() + word.size()) return false;
+    if constexpr (std::is_floating_point_v<Number>)
+        if (error == std::errc::result_out_of_range &&
+            std::abs(std::strtod(std::string(word).c_str(), nullptr)) < 1.0) {
+            value = 0;
+            return true;
+        }
+    return error == std::errc{} && std::isfinite(static_cast<double>(value));
 }
 
 struct Surface {
@@ -61,15 +72,25 @@ void read_materials(std::string_view text, Materials& materials) {
     }
 }
 
-// Refuses files that are not UTF-8 before a line of them makes no sense. Skips a byte order mark.
-Result<void> check_encoding(std::string_view& text) {
+// Refuses files that are not UTF-8 before a line of them makes no sense.
+Result<void> check_encoding(std::string_view text) {
     const auto begins = [&](std::string_view mark) { return text.substr(0, mark.size()) == mark; };
     if (begins("\xFF\xFE") || begins("\xFE\xFF"))
         return fail(ErrorCode::unsupported, kNoItem, "is UTF-16 text; save it as UTF-8");
-    if (begins("\xEF\xBB\xBF")) text.remove_prefix(3);
     const std::size_t zero = text.find('\0');
     if (zero == std::string_view::npos) return {};
     return fail(ErrorCode::parse, zero, "is no text: byte " + std::to_string(zero) + " is 0");
+}
+
+// Keywords that are not read, old ones too, and comments.
+bool is_other_keyword(std::string_view word) {
+    static constexpr std::string_view kOther[] = {
+        "vp",     "deg",    "bmat",     "step",     "cstype", "p",          "l",         "curv",  "curv2",
+        "surf",   "parm",   "trim",     "hole",     "scrv",   "sp",         "end",       "con",   "s",
+        "mg",     "bevel",  "c_interp", "d_interp", "lod",    "shadow_obj", "trace_obj", "ctech", "stech",
+        "usemap", "maplib", "bsp",      "bzp",      "cdc",    "cdp",        "res",       "call",  "csh"};
+    return word.empty() || word.front() == '#' ||
+           std::find(std::begin(kOther), std::end(kOther), word) != std::end(kOther);
 }
 
 constexpr std::size_t kMostWarnings = 20;
@@ -105,6 +126,9 @@ class ObjReader {
                 use_material(next_word(line));
             else if (key == "mtllib")
                 done = load_libraries(line);
+            else if (file_.unknown_line.empty() && !is_other_keyword(key))
+                file_.unknown_line =
+                    "; " + line_name() + " begins with '" + std::string(key.substr(0, 40)) + "', which is no keyword";
             if (!done && (!options_.leave_out || done.error().code == ErrorCode::budget_exceeded))
                 return in_file(path_, "", done.error());
             if (!done) left_out(done.error());
@@ -197,9 +221,7 @@ class ObjReader {
         word.remove_prefix(number.size());
         if (number.empty()) return ObjFile::kNone;
         long long index = 0;
-        const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), index);
-        const bool valid = error == std::errc{} && end == number.data() + number.size();
-        const std::uint32_t found = valid ? resolve(index, count) : ObjFile::kNone;
+        const std::uint32_t found = parse(number, index) ? resolve(index, count) : ObjFile::kNone;
         dangling_ += found == ObjFile::kNone;
         return found;
     }
@@ -207,14 +229,14 @@ class ObjReader {
     Result<Corner> read_corner(std::string_view word) {
         const std::string_view number = word.substr(0, word.find('/'));
         long long index = 0;
-        const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), index);
-        if (error != std::errc{} || end != number.data() + number.size())
+        if (!parse(number, index))
             return tl::unexpected(
                 bad(ErrorCode::parse, "face: '" + std::string(word.substr(0, 40)) + "' is not a vertex").error());
         Corner corner{resolve(index, file_.positions.size())};
         if (corner.position == ObjFile::kNone)
             return tl::unexpected(bad(ErrorCode::out_of_range, "face: vertex " + std::to_string(index) + " of " +
-                                                                   std::to_string(file_.positions.size()))
+                                                                   std::to_string(file_.positions.size()) +
+                                                                   file_.unknown_line)
                                       .error());
         if (std::binary_search(bad_vertices_.begin(), bad_vertices_.end(), corner.position))
             return tl::unexpected(
@@ -240,6 +262,8 @@ class ObjReader {
         outline_.clear();
         for (const Corner& corner : face_) outline_.push_back(file_.positions[corner.position]);
         const FaceCut cut = triangulator_.cut(outline_);
+        if (triangulator_.triangles().size() > options_.limits.triangles - triangles_)
+            return over_limit("triangles", options_.limits.triangles);
         triangles_ += triangulator_.triangles().size();
         for (const auto& triangle : triangulator_.triangles())
             for (const std::uint32_t corner : triangle) add_corner(file_.parts.back(), face_[corner]);
@@ -357,9 +381,8 @@ class ObjReader {
 Result<ObjFile> read_obj(const std::string& path, const ObjOptions& options) {
     const auto file = read_file(path, options.limits.bytes);
     if (!file) return tl::unexpected(file.error());
-    std::string_view text = *file;
-    if (auto readable = check_encoding(text); !readable) return in_file(path, "", readable.error());
-    return ObjReader(path, text, options).read();
+    if (auto readable = check_encoding(*file); !readable) return in_file(path, "", readable.error());
+    return ObjReader(path, *file, options).read();
 }
 
 }  // namespace crofton::assets

@@ -35,8 +35,10 @@ struct ObjFile {
     std::vector<Part> parts;             // at least one; any may be without faces
     std::vector<std::string> warnings;   // material libraries, texture coordinates and normals that are not there
     std::vector<std::string> odd_faces;  // faces that cross themselves or have no area, and so are fans
-    ReadLimits limits;                   // that it was read with
-    std::uint64_t bytes_read = 0;        // with its libraries, within limits.bytes
+    // Names the first line whose keyword is none, for messages of what is missing then; "; line …", or empty.
+    std::string unknown_line;
+    ReadLimits limits;             // that it was read with
+    std::uint64_t bytes_read = 0;  // with its libraries, within limits.bytes
 };
 
 struct ObjOptions {

@@ -54,7 +54,7 @@ Result<SceneSource> load_obj(const std::string& path, const LoadOptions& options
     }
     if (source.scene.instance_count() == 0)
         return fail(ErrorCode::empty, kNoItem,
-                    path + ": holds no faces, so there is nothing to draw" +
+                    path + ": holds no faces, so there is nothing to draw" + file.unknown_line +
                         (source.warnings.empty() ? "" : ": " + source.warnings.front()));
     return source;
 }

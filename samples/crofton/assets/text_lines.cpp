@@ -4,6 +4,8 @@
 namespace crofton::assets {
 namespace {
 
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
 bool has_comment(std::string_view line) {
     for (std::size_t i = line.find('#'); i != std::string_view::npos; i = line.find('#', i + 1))
         if (i == 0 || is_blank(line[i - 1])) return true;
@@ -32,6 +34,7 @@ std::string_view next_word(std::string_view& line) {
 
 std::string_view TextLines::physical_line() {
     ++lines_read_;
+    while (text_.substr(0, kByteOrderMark.size()) == kByteOrderMark) text_.remove_prefix(kByteOrderMark.size());
     const std::size_t end = text_.find_first_of("\r\n");
     const std::string_view line = text_.substr(0, end);
     if (end == std::string_view::npos) {

@@ -16,7 +16,8 @@ namespace crofton::assets {
 
 // Lines end in LF, CR LF or CR. A line whose last character that is no blank is "\" continues on the next one: the "\"
 // and the line's end count as a blank. A comment (from "#" at the line's begin or behind a blank) does not continue, so
-// that one that ends in a Windows path swallows nothing.
+// that one that ends in a Windows path swallows nothing. Byte order marks of UTF-8 at the begin of a line are skipped:
+// files that are put together keep those of their parts.
 class TextLines {
   public:
     explicit TextLines(std::string_view text) : text_(text) {}

@@ -26,8 +26,8 @@ Result<void> for_each_instance(const std::string& path, const ReadOptions& optio
     return {};
 }
 
-Result<TriangleMesh> with_triangles(TriangleMesh mesh, const std::string& path) {
-    if (mesh.indices.empty()) return fail(ErrorCode::empty, kNoItem, path + ": no triangles");
+Result<TriangleMesh> with_triangles(TriangleMesh mesh, const std::string& path, const std::string& why = {}) {
+    if (mesh.indices.empty()) return fail(ErrorCode::empty, kNoItem, path + ": no triangles" + why);
     return mesh;
 }
 
@@ -41,7 +41,7 @@ Result<TriangleMesh> load_obj_mesh(const std::string& path, const ReadOptions& o
     mesh.positions.assign(file->positions.begin(), file->positions.end());
     for (const assets::ObjFile::Part& part : file->parts)
         mesh.indices.insert(mesh.indices.end(), part.indices.begin(), part.indices.end());
-    return with_triangles(std::move(mesh), path);
+    return with_triangles(std::move(mesh), path, file->unknown_line);
 }
 
 }  // namespace

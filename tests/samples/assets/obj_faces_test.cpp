@@ -236,6 +236,36 @@ TEST_SUITE("assets/obj_faces") {
         }
     }
 
+    TEST_CASE("a keyhole with more corners on one side of its bridges is cut, rounded to doubles or to floats") {
+        std::mt19937 random(4605);
+        for (int trial = 0; trial < 600; ++trial) {
+            CAPTURE(trial);
+            const Keyhole made = keyhole(random);
+            Ring ring;
+            for (std::size_t i = 0; i < made.ring.size(); ++i) {
+                const glm::dvec2 &a = made.ring[i], &b = made.ring[(i + 1) % made.ring.size()];
+                ring.push_back(a);
+                if (random() % 2 == 0) ring.push_back(glm::mix(a, b, uniform(random, 0.1, 0.9)));
+            }
+            if (trial % 2 == 0) {
+                check_area(random, ring, made.area, 2 * ring.size());
+                continue;
+            }
+            FacePlane plane = random_plane(random);
+            plane.origin *= 0.1;
+            std::vector<glm::dvec3> corners;
+            for (const glm::dvec2& p : ring) corners.emplace_back(glm::vec3(plane.at(p)));
+            const auto obj = read_face(face_text(corners));
+            CHECK(obj.odd_faces.empty());
+            double area = 0.0;
+            for (std::size_t i = 0; i < obj.parts[0].indices.size(); i += 3) {
+                const auto at = [&](std::size_t k) { return obj.positions[obj.parts[0].indices[i + k]]; };
+                area += 0.5 * glm::length(glm::cross(at(1) - at(0), at(2) - at(0)));
+            }
+            CHECK(area == doctest::Approx(made.area * plane.size * plane.size).epsilon(1e-5));
+        }
+    }
+
     TEST_CASE("a warped face is cut in its projection along its Newell normal") {
         std::mt19937 random(4603);
         for (int trial = 0; trial < 200; ++trial) {

@@ -110,6 +110,29 @@ TEST_SUITE("assets/obj_lines") {
         CHECK(message("v 0 0 0\rf 1 2 3\r") == ": line 2: face: vertex 2 of 1");
     }
 
+    TEST_CASE("files that were put together keep their marks, numbers may have a plus or be too small to tell from 0") {
+        const assets::ObjFile expected = read_lines("v 0 0 0\nv 2 0 0 1 0 0\nv 0 2 0\nvn 0 0 1\nf 1//1 2//1 3//1\n");
+        check_same(
+            read_lines("\xEF\xBB\xBFv 0 0 0\n\xEF\xBB\xBF\xEF\xBB\xBFv 2 0 0 1 0 0\nv 0 2 0\n\xEF\xBB\xBFvn 0 0 1\n"
+                       "f +1//+1 +2//+1 +3//+1\n"),
+            expected);
+        check_same(read_lines("v 1e-400 0 -1E-9999\nv +2 0 0 1 1e-60 0\nv 0." + std::string(400, '0') +
+                              "1 2 0\nvn 0 1e-46 1\nf 1//1 2//1 3//1\n"),
+                   expected);
+    }
+
+    TEST_CASE("if vertices are missing, the first line whose keyword is none is named") {
+        const auto message = [](const std::string& text) {
+            const TemporaryFile file("bad.obj", text);
+            const auto obj = assets::read_obj(file.path());
+            return obj ? "read" + obj->unknown_line : obj.error().message.substr(file.path().size());
+        };
+        CHECK(message("v 0 0 0\nV 1 0 0\nv 0 1 0\nf 1 2 3\n") ==
+              ": line 4: face: vertex 3 of 2; line 2 begins with 'V', which is no keyword");
+        CHECK(message("ply\nformat ascii 1.0\n") == "read; line 1 begins with 'ply', which is no keyword");
+        CHECK(message("#v\n# c\n\nvp 0\ns off\nlod 1\nl 1 2\ncurv2 1\n") == "read");
+    }
+
     TEST_CASE("lines: a text without an end, ends that meet, continuations at the end") {
         const auto lines_of = [](std::string_view text) {
             std::vector<std::string> result;
