@@ -72,8 +72,8 @@ class FramesRun {
     }
 
     Result<int> run() {
-        catch_interrupts();
         if (auto prepared = prepare(); !prepared) return tl::unexpected(prepared.error());
+        catch_interrupts();  // before, there is nothing to keep
         std::optional<pipeline::Verification> verification;
         if (options_.verify) verification.emplace();
         std::vector<FrameStatistics> frames;

@@ -51,6 +51,7 @@ struct Job {
     pipeline::PvsScene scene;
     pvs::Cells cells;
     pvs::Shard shard;
+    Vector<std::byte> scene_file;  // of --with-scene
     double trace_seconds = 0.0, proof_seconds = 0.0;
 };
 
@@ -75,7 +76,14 @@ Result<Job> make_job(const PvsRequest& options, Executor& executor) {
     auto scene =
         pipeline::make_pvs_scene(*source, !options.out.empty() || !options.svg.empty() || options.views > 0, executor);
     if (!scene) return tl::unexpected(scene.error());
-    return Job{options, std::move(*source), std::move(*scene), std::move(*cells), *shard};
+    // Before the lines: once they are interrupted, little is left to do.
+    Vector<std::byte> scene_file;
+    if (options.with_scene) {
+        auto baked = assets::bake_source(*source, executor);
+        if (!baked) return tl::unexpected(baked.error());
+        scene_file = std::move(*baked);
+    }
+    return Job{options, std::move(*source), std::move(*scene), std::move(*cells), *shard, std::move(scene_file)};
 }
 
 // Levels have no bodies; other scenes mostly do, and many more triangles.
@@ -149,18 +157,12 @@ std::uint32_t middle_cell(const pvs::Pvs& sets) {
     return best;
 }
 
-Result<void> write_outputs(const Job& job, const pvs::Pvs& sets, Executor& executor, std::size_t& file_bytes) {
+Result<void> write_outputs(const Job& job, const pvs::Pvs& sets, std::size_t& file_bytes) {
     const PvsRequest& options = job.options;
     if (!options.out.empty()) {
-        Vector<std::byte> scene_file;
-        if (options.with_scene) {
-            auto baked = assets::bake_source(job.source, executor);
-            if (!baked) return tl::unexpected(baked.error());
-            scene_file = std::move(*baked);
-        }
-        const auto file = sets.to_file(scene_file);
+        const auto file = sets.to_file(job.scene_file);
         if (!file) return tl::unexpected(file.error());
-        file_bytes = file->size() - scene_file.size();
+        file_bytes = file->size() - job.scene_file.size();
         if (auto written = write_file(options.out, {reinterpret_cast<const char*>(file->data()), file->size()});
             !written)
             return written;
@@ -310,10 +312,10 @@ Result<Views> look_from_places(const Job& job, const pvs::Pvs& sets, Executor& e
 }
 
 Result<int> run_pvs(const PvsRequest& options) {
-    catch_interrupts();
     ThreadPool pool(options.threads);
     auto job = make_job(options, pool);
     if (!job) return tl::unexpected(job.error());
+    catch_interrupts();  // before, there is nothing to keep
     auto bake = pvs::Bake::create(job->scene.geometry, job->cells,
                                   {.epsilon = options.epsilon,
                                    .confidence = options.confidence,
@@ -335,7 +337,7 @@ Result<int> run_pvs(const PvsRequest& options) {
                    stderr);
     finish_what_there_is();
     std::size_t file_bytes = 0;
-    if (auto written = write_outputs(*job, *sets, pool, file_bytes); !written) return tl::unexpected(written.error());
+    if (auto written = write_outputs(*job, *sets, file_bytes); !written) return tl::unexpected(written.error());
     const auto views = look_from_places(*job, *sets, pool);
     if (!views) return tl::unexpected(views.error());
     if (options.views > 0 && !*views) std::fputs("crofton: interrupted: there are no figures of --views\n", stderr);

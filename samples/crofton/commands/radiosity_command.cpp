@@ -168,6 +168,52 @@ Result<Light> find_light(const RadiosityOptions& options, const radiosity::Patch
     return light;
 }
 
+// What needs lines of its own, besides the light.
+struct LightStudies {
+    std::optional<LightFieldReport> field;
+    std::optional<ReferenceReport> reference;
+    Json visibility;
+};
+
+struct FoundLight {
+    const assets::SceneSource& source;
+    const LitScene& lit;
+    const radiosity::SolverOptions& parameters;
+    const radiosity::Solver& solver;
+    const TriangleMesh& mesh;
+    float exposure;
+};
+
+// Ends at the first that is interrupted; this one and those after it are left out.
+Result<LightStudies> study_light(const RadiosityOptions& options, const FoundLight& found, Executor& executor) {
+    LightStudies studies;
+    if (interrupted()) return studies;
+    const auto tracer = lines::LineTracer::build(found.lit.patches.mesh);
+    if (!tracer) return tl::unexpected(tracer.error());
+    if (!options.light_field.empty()) {
+        const auto camera = camera_for(found.source, options.seed);
+        if (!camera) return tl::unexpected(camera.error());
+        auto drawn = draw_light_field({found.mesh, *tracer, found.parameters.outside.sky, *camera, found.exposure,
+                                       options.stored_lines, options.seed, options.light_field},
+                                      executor);
+        if (!drawn && drawn.error().code == ErrorCode::cancelled) return studies;
+        if (!drawn) return tl::unexpected(drawn.error());
+        studies.field = *drawn;
+    }
+    if (options.reference > 0) {
+        const auto compared =
+            compare_to_reference(found.lit.patches, found.parameters, options.reference, found.solver, executor);
+        if (!compared && compared.error().code == ErrorCode::cancelled) return studies;
+        if (!compared) return tl::unexpected(compared.error());
+        studies.reference = *compared;
+    }
+    const auto seen = lines::visibility_complexity(
+        *tracer, lines::LineSource(tracer->bounds(), lines::LineMethod::walls, options.seed), 50);
+    studies.visibility = {
+        {"mean_crossings", seen.mean_crossings}, {"deviation", seen.deviation}, {"wasted", seen.wasted}};
+    return studies;
+}
+
 Result<int> run_radiosity(const RadiosityOptions& options) {
     const auto parameters = solver_options(options);
     if (!parameters) return tl::unexpected(parameters.error());
@@ -188,11 +234,14 @@ Result<int> run_radiosity(const RadiosityOptions& options) {
     const auto found = find_light(options, lit->patches, *parameters, pool);
     if (!found) return tl::unexpected(found.error());
     const radiosity::Solver* const solver = &found->solver();
-    const bool cut_short = interrupted();
-    finish_what_there_is();
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
     const TriangleMesh light = lit_mesh(*lit, *solver);
     const float exposure = automatic_exposure(*lit, *solver);
+    const auto studied = study_light(options, {*source, *lit, *parameters, *solver, light, exposure}, pool);
+    if (!studied) return tl::unexpected(studied.error());
+    const auto& [field, reference, visibility] = *studied;
+    const bool cut_short = interrupted();
+    finish_what_there_is();
     TriangleMesh picture = light;
     for (glm::vec3& color : picture.colors) color = compressed(exposure * color);
     if (!options.out.empty())
@@ -203,35 +252,6 @@ Result<int> run_radiosity(const RadiosityOptions& options) {
         const float sky = static_cast<float>(std::min(1.0, options.sky));
         if (auto written = write_lit_picture(options.png, picture, *camera, 1280, 720, sky); !written)
             return tl::unexpected(written.error());
-    }
-    // What needs lines of its own is left out of a run that was cut short.
-    std::optional<lines::LineTracer> tracer;
-    if (!cut_short) {
-        auto built = lines::LineTracer::build(lit->patches.mesh);
-        if (!built) return tl::unexpected(built.error());
-        tracer.emplace(std::move(*built));
-    }
-    std::optional<LightFieldReport> field;
-    if (!options.light_field.empty() && !cut_short) {
-        const auto camera = camera_for(*source, options.seed);
-        if (!camera) return tl::unexpected(camera.error());
-        auto drawn = draw_light_field({light, *tracer, parameters->outside.sky, *camera, exposure, options.stored_lines,
-                                       options.seed, options.light_field},
-                                      pool);
-        if (!drawn) return tl::unexpected(drawn.error());
-        field = *drawn;
-    }
-    std::optional<ReferenceReport> reference;
-    if (options.reference > 0 && !cut_short) {
-        const auto compared = compare_to_reference(lit->patches, *parameters, options.reference, *solver, pool);
-        if (!compared) return tl::unexpected(compared.error());
-        reference = *compared;
-    }
-    Json visibility;
-    if (tracer) {
-        const auto seen = lines::visibility_complexity(
-            *tracer, lines::LineSource(tracer->bounds(), lines::LineMethod::walls, options.seed), 50);
-        visibility = {{"mean_crossings", seen.mean_crossings}, {"deviation", seen.deviation}, {"wasted", seen.wasted}};
     }
     glm::dvec3 mean(0.0);
     double area = 0.0;
@@ -258,12 +278,13 @@ Result<int> run_radiosity(const RadiosityOptions& options) {
                          {"seconds", seconds},
                          {"light_field", field ? to_json(*field) : Json(nullptr)},
                          {"visibility", visibility}};
+    std::string missing;
+    if (!options.light_field.empty() && !field) missing = ", but no light field";
+    if (options.reference > 0 && !reference)
+        missing += std::string(missing.empty() ? ", but" : " and") + " no comparison with a reference";
     if (cut_short)
         std::fprintf(stderr, "crofton: interrupted: the results of %llu runs are written%s%s\n",
-                     static_cast<unsigned long long>(solver->runs()),
-                     options.light_field.empty() && options.reference == 0
-                         ? ""
-                         : ", but no light field and no comparison with a reference",
+                     static_cast<unsigned long long>(solver->runs()), missing.c_str(),
                      options.checkpoint.empty() ? "; with --checkpoint the next run would continue from here" : "");
     const int status = cut_short ? kInterrupted : kSuccess;
     if (!options.json.empty()) {

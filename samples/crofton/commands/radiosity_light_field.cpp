@@ -6,7 +6,9 @@
 #include <cstdio>
 #include <glm/geometric.hpp>
 
+#include "interrupt.hpp"
 #include "pipeline/png.hpp"
+#include "progress_bar.hpp"
 #include "radiosity_output.hpp"
 #include "report.hpp"
 
@@ -61,6 +63,8 @@ Result<LightFieldReport> draw_light_field(const LightFieldRun& run, Executor& ex
     options.lines = run.lines;
     options.seed = run.seed;
     options.sky = run.sky;
+    options.should_stop = should_stop;
+    ProgressBar bar("radiosity: light field");
     const auto field = study::LightField::record(run.tracer, light, options, executor);
     if (!field) return tl::unexpected(field.error());
     const auto drawn = field->draw(run.camera, kPictureWidth, kPictureHeight, {});

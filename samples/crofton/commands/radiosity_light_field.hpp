@@ -28,7 +28,7 @@ struct LightFieldReport {
     double color_error = 0.0;     // and of the colours shown, 1 being white against black
 };
 
-// Writes the picture from lines alone, 640 by 360.
+// Writes the picture from lines alone, 640 by 360. Error: cancelled, if interrupted; then nothing is written.
 [[nodiscard]] Result<LightFieldReport> draw_light_field(const LightFieldRun& run, Executor& executor);
 [[nodiscard]] Json to_json(const LightFieldReport& report);
 void print(const LightFieldReport& report);

@@ -15,8 +15,10 @@
 #include <utility>
 
 #include "assets/split_mesh.hpp"
+#include "interrupt.hpp"
 #include "json/json.hpp"
 #include "pipeline/png.hpp"
+#include "progress_bar.hpp"
 #include "report.hpp"
 
 namespace crofton::cli {
@@ -280,7 +282,12 @@ Result<ReferenceReport> compare_to_reference(const radiosity::Patches& patches, 
     options.seed += 1;
     auto reference = radiosity::Solver::create(patches, options);
     if (!reference) return tl::unexpected(reference.error());
-    while (reference->runs() < runs) reference->run(executor);
+    {
+        ProgressBar bar("radiosity: reference", runs);
+        for (; reference->runs() < runs; bar.set(reference->runs()))
+            if (!reference->run(should_stop, nullptr, executor))
+                return fail(ErrorCode::cancelled, kNoItem, "interrupted in the runs to compare with");
+    }
     std::vector<double> errors;
     for (std::size_t i = 0; i < patches.count(); ++i) {
         const glm::vec3 light = reference->radiosity()[i];

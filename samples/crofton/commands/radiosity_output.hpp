@@ -58,7 +58,7 @@ struct ReferenceReport {
     double median = 0.0, worst_of_95 = 0.0;   // errors that half and 95 % of the patches do not exceed
 };
 
-// Makes `runs` of another seed, and compares. Errors: as Solver::create.
+// Makes `runs` of another seed, and compares. Errors: as Solver::create; cancelled, if interrupted.
 [[nodiscard]] Result<ReferenceReport> compare_to_reference(const radiosity::Patches& patches,
                                                            radiosity::SolverOptions options, std::uint64_t runs,
                                                            const radiosity::Solver& found, Executor& executor);

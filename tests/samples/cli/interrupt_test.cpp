@@ -158,6 +158,28 @@ TEST_SUITE("cli/interrupt") {
         CHECK(files_in(folder) == 1);
     }
 
+    TEST_CASE("radiosity that stores lines, or makes runs to compare with, ends without these and writes the light") {
+        const std::string folder = fresh("studies");
+        const std::string glb = folder + "/lit.glb", json = folder + "/figures.json", field = folder + "/field.png";
+        const std::vector<std::string> bake{"study", "radiosity", "room", "--edge", "2", "--shadow-cuts", "0", "--runs",
+                                            "2",     "--out",     glb,    "--json", json};
+        const std::vector<std::string> studies[] = {
+            {"--reference", "1000000"}, {"--light-field", field, "--stored-lines", "268435456", "--threads", "1"}};
+        const char* const begun[] = {"radiosity: reference: ", "radiosity: light field: "};
+        const char* const missing[] = {"but no comparison with a reference", "but no light field"};
+        for (int k = 0; k < 2; ++k) {
+            std::vector<std::string> command = bake;
+            command.insert(command.end(), studies[k].begin(), studies[k].end());
+            const Ended ended = end_after(command, milliseconds(60'000), SIGTERM, begun[k]);
+            check_ended(ended);
+            CHECK_MESSAGE(ended.err.find(missing[k]) != std::string::npos, ended.err);
+            CHECK(contents_of(glb).substr(0, 4) == "glTF");
+            CHECK(nlohmann::json::parse(contents_of(json), nullptr, false).at("runs") == 2);
+            CHECK(files_in(folder) == 2);
+            std::filesystem::remove(glb);
+        }
+    }
+
     TEST_CASE("fit gives the best box so far, with a gap, of several files those that are done") {
         const std::string sphere = sphere_file();
         const Ended one =

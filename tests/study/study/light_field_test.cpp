@@ -82,6 +82,17 @@ TEST_SUITE("study/light_field") {
         CHECK_FALSE(study::direct_picture(tracer, light, {}, camera, 9, 6).has_value());
     }
 
+    TEST_CASE("recording ends when the caller asks it to") {
+        const lines::LineTracer tracer = lines::LineTracer::build(room()).value();
+        const auto light = [](std::uint32_t, const glm::dvec3&) { return study::Leaving{glm::vec3(1.0f), {0, 1, 0}}; };
+        int asked = 0;
+        study::LightFieldOptions options;
+        options.should_stop = [](void* user, double share) { return share == 0.0 && ++*static_cast<int*>(user) > 0; };
+        options.user = &asked;
+        CHECK(error_of(study::LightField::record(tracer, light, options)).code == ErrorCode::cancelled);
+        CHECK(asked == 1);
+    }
+
     TEST_CASE("a closed room that glows alike everywhere gives that light in every pixel") {
         TriangleMesh mesh;
         add_box(mesh, {0, 0, 0}, {4, 3, 5}, true);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <crofton/core/stop_signal.hpp>
 #include <crofton/sampling/sampling.hpp>
 #include <crofton/study/light_field.hpp>
 #include <glm/common.hpp>
@@ -99,10 +100,12 @@ Result<LightField> LightField::record(const lines::LineTracer& scene, LightAt li
     const double cell_area = shadow * static_cast<double>(count) / static_cast<double>(options.lines);
     field.bundles_.resize(count);
     const sampling::UnitPoints points(options.seed);
+    crofton::detail::StopSignal stop(options.should_stop, options.user);
     executor.parallel_for(count, 4, [&](std::size_t begin, std::size_t end, unsigned) {
         Vector<Line> lines;
         lines::LineHits hits;
         for (std::size_t b = begin; b < end; ++b) {
+            if (stop.is_raised(0.0)) return;
             Bundle& bundle = field.bundles_[b];
             bundle.lines = lines::make_bundle(scene.bounds(), cell_area, points.at<2>(b),
                                               sampling::seed_of_repetition(options.seed, b, count));
@@ -122,6 +125,7 @@ Result<LightField> LightField::record(const lines::LineTracer& scene, LightAt li
                 }
         }
     });
+    if (stop.was_raised()) return fail(ErrorCode::cancelled, kNoItem, "light field: cancelled");
     for (const Bundle& bundle : field.bundles_) {
         field.crossings_ += bundle.crossings.size();
         for (std::size_t c = 0; c < bundle.ends.size(); ++c)

@@ -4,6 +4,7 @@
 #include <crofton/core/error.hpp>
 #include <crofton/core/executor.hpp>
 #include <crofton/core/memory.hpp>
+#include <crofton/core/stop.hpp>
 #include <crofton/geometry/camera.hpp>
 #include <crofton/lines/lines.hpp>
 #include <cstdint>
@@ -30,14 +31,17 @@ struct LightPicture {
 struct LightFieldOptions {
     std::uint64_t lines = std::uint64_t{1} << 22;  // about so many that meet the scene's box, in [1, 2^28]
     std::uint64_t seed = 1;
-    glm::vec3 sky{0.0f};  // what comes along a line from beyond the scene
+    glm::vec3 sky{0.0f};                 // what comes along a line from beyond the scene
+    StopCallback should_stop = nullptr;  // `share_done` is always 0
+    void* user = nullptr;
 };
 
 // Stores uniform lines (docs/theory.md, section 6) in bundles of parallel ones, with all their crossings: their places,
 // and the light that leaves there along the line. It stores neither triangles nor patches.
 class LightField {
   public:
-    // Errors: options out of range; a box that is flat in two directions. The bits are the same for any executor.
+    // Errors: options out of range; a box that is flat in two directions; cancelled, by should_stop. The bits are the
+    // same for any executor.
     [[nodiscard]] static Result<LightField> record(const lines::LineTracer& scene, LightAt light,
                                                    const LightFieldOptions& options = {},
                                                    Executor& executor = serial_executor());
