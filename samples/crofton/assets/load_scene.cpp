@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <crofton/bake/region_files.hpp>
 #include <filesystem>
 
 #include "assets/file.hpp"
@@ -21,6 +22,16 @@ bool is_made(const std::string& source) {
     return holds_city_parts(source);
 }
 
+Result<void> refuse_regions(const std::string& path) {
+    const std::string holder = folder(path).empty() ? "." : folder(path);
+    if (file_name(path) == bake::kRegionIndexName && bake::open_region_index(holder))
+        return fail(ErrorCode::unsupported, kNoItem, path + ": is the index of a folder of regions; name the folder");
+    std::error_code ignored;
+    if (!std::filesystem::exists(path + "/" + bake::kRegionIndexName, ignored)) return {};
+    return fail(ErrorCode::unsupported, kNoItem,
+                path + ": is a folder of regions, which frames, view and bake take; name one of its files");
+}
+
 Result<SceneSource> load_scene(const std::string& source, const LoadOptions& options) {
     const std::string kind = extension(source);
     if (kind != "wad" && !options.map.empty())
@@ -32,6 +43,7 @@ Result<SceneSource> load_scene(const std::string& source, const LoadOptions& opt
     if (source == "office") return make_office(options);
     if (source == "valley") return make_valley(options);
     if (source == "hall") return make_hall(options);
+    if (auto scene = refuse_regions(source); !scene) return tl::unexpected(scene.error());
     std::error_code ignored;
     if (std::filesystem::is_directory(source, ignored)) {
         if (holds_city_parts(source)) return make_city(source, options);

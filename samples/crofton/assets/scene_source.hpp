@@ -70,6 +70,9 @@ struct SceneSource {
 // is refused.
 [[nodiscard]] Result<SceneSource> load_scene(const std::string& source, const LoadOptions& options = {});
 
+// Error: the path is a folder of regions or its index, which are no one scene.
+[[nodiscard]] Result<void> refuse_regions(const std::string& path);
+
 // Whether load_scene() makes it, rather than read a scene's file.
 [[nodiscard]] bool is_made(const std::string& source);
 

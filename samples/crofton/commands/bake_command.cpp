@@ -137,6 +137,7 @@ class BakeRun {
     int check() {
         if (pipeline::holds_regions(options_.scene))
             return check_regions(options_.scene, options_.read.limits.bytes, options_.json, executor());
+        if (auto file = assets::refuse_regions(options_.scene); !file) return report_error("", file.error());
         if (assets::extension(options_.scene) != "crofton" && (is_scene() || !std::filesystem::exists(options_.scene)))
             return report_error(
                 options_.scene,

@@ -138,6 +138,9 @@ std::string reason(const CLI::App& app, const CLI::ParseError& error, const std:
     if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr) return of_conversion(command, error.what());
     if (is_group(command)) return "a sub-command is missing";
     const std::string what = error.what();
+    // "--json: 1 required FILE missing"
+    if (what.find(" required ") != std::string::npos && what.size() > 8 && what.substr(what.size() - 8) == " missing")
+        return what.substr(0, what.find(':')) + ": its value is missing";
     const std::size_t required = what.find(" is required");
     return what[0] == '-' || required == std::string::npos ? what
                                                            : "an argument is missing: " + what.substr(0, required);

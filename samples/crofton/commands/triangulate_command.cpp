@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "assets/file.hpp"
+#include "assets/scene_source.hpp"
 #include "commands.hpp"
 #include "interrupt.hpp"
 #include "json/json.hpp"
@@ -170,6 +171,10 @@ Result<int> run_triangulate(const TriangulateOptions& options) {
         return fail(ErrorCode::invalid_argument, kNoItem, "--tolerance must not be negative");
     const std::string kind = assets::extension(options.file);
     const bool mesh = kind == "obj" || kind == "glb" || kind == "gltf" || assets::is_made(options.file);
+    if (auto file = assets::refuse_regions(options.file); !file) return tl::unexpected(file.error());
+    if (kind == "crofton")
+        return fail(ErrorCode::unsupported, kNoItem,
+                    options.file + ": holds triangulations that are baked; name the file that it was baked from");
     if (!mesh && !is_polygon_file(options.file)) {
         return fail(ErrorCode::unsupported, kNoItem,
                     options.file + ": unknown kind of file; known are .poly, .json, .geojson, .wad, .obj, .glb, .gltf");

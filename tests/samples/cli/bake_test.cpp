@@ -214,6 +214,18 @@ TEST_SUITE("cli/bake") {
         REQUIRE_MESSAGE(checked.status == 0, checked.err);
         for (const char* key : {"regions", "instances", "bytes"}) CHECK(checked.json()[key] == first.json()[key]);
         CHECK(checked.json()["instances"].get<int>() > 300);
+        // It is no one scene, and what is baked is triangulated already: commands that need those say so.
+        for (const std::string command : {"fit ", "pvs ", "triangulate ", "study measure ", "bake -o x.crofton "}) {
+            const CliRun run = run_cli(command + one);
+            CHECK(run.status == 2);
+            CHECK_MESSAGE(run.err.find("is a folder of regions, which frames, view and bake take") != std::string::npos,
+                          run.err);
+        }
+        for (const std::string command : {"frames --no-draw ", "bake ", "fit ", "triangulate "})
+            CHECK(run_cli(command + one + "/index.crofton")
+                      .err.find("is the index of a folder of regions; name the folder") != std::string::npos);
+        CHECK(run_cli("triangulate " + one + "/r0_0.crofton").err.find("name the file that it was baked from") !=
+              std::string::npos);
         // A damaged region is named.
         std::string damaged = contents_of(one + "/r1_0.crofton");
         damaged[damaged.size() / 2] ^= 1;

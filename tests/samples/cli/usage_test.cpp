@@ -193,6 +193,10 @@ TEST_SUITE("cli/usage") {
     TEST_CASE("the message says what is missing, and what --cells may be") {
         CHECK(run_cli("fit").err.find("an argument is missing: files") != std::string::npos);
         CHECK(run_cli("collide a.obj").err.find("an argument is missing: B") != std::string::npos);
+        for (const std::string option : {"frames --json", "frames --frames", "collide a b --pose", "pvs room --near",
+                                         "fit room --criterion", "verify --trials", "study measure --lines"})
+            CHECK(run_cli(option).err.find(option.substr(option.rfind('-') - 1) + ": its value is missing") !=
+                  std::string::npos);
         const CliRun cells = run_cli("pvs room --cells 4x4 --out p.crofton");
         CHECK(cells.status == 2);
         CHECK(cells.err.find("--cells 4x4: there is no such file; a grid is three numbers") != std::string::npos);
