@@ -20,7 +20,7 @@ void shadow_casters(benchmark::State& state, bool is_sun) {
     const glm::dvec3 toward(0.3, 1.0, 0.2);
     const Sphere lamp{view.frustum.origin + glm::dvec3(0.0, 5.0, 0.0), 20.0};
     cull::VisibleSet visible, candidates;
-    cull::ShadowReceivers receivers;
+    cull::CasterFilter receivers;
     std::vector<Obb> seen, boxes;
     Vector<std::uint32_t> casters;
     const auto query = [&] {

@@ -129,7 +129,7 @@ void cast_shadows(assets::SceneSource& source, const pipeline::SceneClusters& cl
             pipeline::append_depth_objects(source.scene, clusters, source.one_sided, frames[i].instances, suns[i],
                                            on_map);
             std::vector<depth::DepthReceiver> receivers;
-            for (const depth::DepthObject& o : on_map) receivers.push_back({o.to_clip});
+            for (const depth::DepthObject& o : on_map) receivers.push_back({o.mesh, o.to_clip});
             for (int r = 0; r < repeats; ++r) {
                 by_light[i].run([&] { (void)expect(alone.find_visible(casters[i].list, map), "map"); });
                 by_receivers[i].run([&] {

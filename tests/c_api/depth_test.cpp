@@ -280,9 +280,9 @@ TEST_SUITE("capi/depth") {
             const glm::mat4 clip = to_clip(place), map(crofton::world_to_clip(lamp) * place);
             drawn.push_back(object_of(in_c, clip)), casters.push_back(object_of(in_c, map));
             same_drawn.push_back({&in_cpp, clip}), same_casters.push_back({&in_cpp, map});
-            crofton_depth_receiver receiver{{}, i % 7 == 0};
+            crofton_depth_receiver receiver{in_c.get(), {}, i % 7 == 0};
             std::memcpy(receiver.to_map, &map[0][0], sizeof receiver.to_map);
-            receivers.push_back(receiver), same_receivers.push_back({map, i % 7 == 0});
+            receivers.push_back(receiver), same_receivers.push_back({&in_cpp, map, i % 7 == 0});
         }
         const crofton_picture_view picture = picture_of(160, 90), size = picture_of(128, 128);
         find(camera_culler, drawn, picture);
@@ -315,6 +315,23 @@ TEST_SUITE("capi/depth") {
             REQUIRE(crofton_depth_culler_nearness(light_culler.get(), 127, 127, &nearness) == CROFTON_OK);
             CHECK(nearness == same_light.nearness(127, 127));
         }
+        const auto seen_mesh = [&](const crofton_clustered_mesh* seen) {
+            for (crofton_depth_receiver& receiver : receivers) receiver.mesh = seen;
+        };
+        const ClusteredMesh other = cut(mesh, 24);
+        for (const crofton_clustered_mesh* wrong : {static_cast<const crofton_clustered_mesh*>(nullptr),
+                                                    static_cast<const crofton_clustered_mesh*>(other.get())}) {
+            seen_mesh(wrong);
+            CHECK(casters_of(camera_culler.get()) == CROFTON_INVALID_ARGUMENT);
+        }
+        seen_mesh(reinterpret_cast<const crofton_clustered_mesh*>(camera_culler.get()));
+        CHECK(casters_of(camera_culler.get()) == CROFTON_BAD_HANDLE);
+        seen_mesh(in_c.get());
+        // A call that fails after it has begun to read objects leaves the camera's answer as it was.
+        drawn[7].mesh = nullptr;
+        CHECK(crofton_depth_culler_find_visible(camera_culler.get(), drawn.data(), drawn.size(), &picture, nullptr,
+                                                &clusters, &count, nullptr) == CROFTON_BAD_HANDLE);
+        CHECK(casters_of(camera_culler.get()) == CROFTON_OK);
         CHECK(casters_of(nullptr) == CROFTON_BAD_HANDLE);
         CHECK(casters_of(light_culler.get()) != CROFTON_OK);
         given.radius = kNaN;

@@ -271,6 +271,16 @@ TEST_SUITE("capi/world_picture") {
         of_camera.picture = nullptr;
         REQUIRE(view(of_camera, seen) == CROFTON_OK);
         CHECK(view(request, result) == CROFTON_INVALID_ARGUMENT);
+        // The World changes: the answer is of another.
+        of_camera.picture = &s.picture;
+        REQUIRE(view(of_camera, seen) == CROFTON_OK);
+        REQUIRE(view(request, result) == CROFTON_OK);
+        update(s.world);
+        CHECK(view(request, result) == CROFTON_OK);
+        const crofton_transform nearer = translation(0, 0, -3);
+        REQUIRE(crofton_world_set_transforms(s.world.get(), &s.objects[1], 0, &nearer, 0, 1) == CROFTON_OK);
+        update(s.world);
+        CHECK(view(request, result) == CROFTON_INVALID_ARGUMENT);
         // Seen from behind the lamp's back.
         of_camera.picture = &s.picture;
         crofton_camera away = s.camera;

@@ -167,7 +167,7 @@ TEST_SUITE("memory/ending") {
             const Sphere points[] = {{{0, 0, -5}, 2.0}, {{1, 0, -9}, 3.0}};
             cull::FroxelLights lights;
             (void)cull::find_lights(*froxels, points, {}, lights);
-            cull::ShadowReceivers receivers;
+            cull::CasterFilter receivers;
             (void)receivers.set_sun(kFrustum, std::span(list).first(20), {0, 1, 0});
             Vector<std::uint32_t> wanted;
             receivers.find_casters(list, wanted);

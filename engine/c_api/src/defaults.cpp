@@ -124,7 +124,7 @@ crofton_shadow_receivers crofton_default_shadow_receivers(void) {
 
 crofton_depth_receivers crofton_default_depth_receivers(void) {
     auto result = sized<crofton_depth_receivers>();
-    result.radius = double{depth::ShadowReceivers().radius};
+    result.radius = double{depth::DepthReceivers().radius};
     return result;
 }
 

@@ -171,8 +171,14 @@ crofton_status crofton_depth_culler_find_casters(crofton_depth_culler* culler, c
     const Asked asked{objects, object_count, map, jobs, clusters, count, statistics, __func__};
     CROFTON_CHECK(read(asked, *culler, view));
     culler->receivers.clear();
-    for (const crofton_depth_receiver& r : std::span(given.objects, given.object_count)) {
+    for (std::size_t i = 0; i < given.object_count; ++i) {
+        const crofton_depth_receiver& r = given.objects[i];
         depth::DepthReceiver& receiver = culler->receivers.emplace_back();
+        if (r.mesh) {
+            const SharedUse use_mesh(r.mesh, __func__);
+            if (use_mesh.failed()) return of_item(use_mesh.status(), i);
+            receiver.mesh = &r.mesh->mesh;
+        }
         std::copy_n(r.to_map, 16, &receiver.to_map[0][0]);
         receiver.solid = r.solid != 0;
     }

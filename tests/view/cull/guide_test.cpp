@@ -95,7 +95,7 @@ int light_row(const std::vector<crofton::Obb>& house_boxes, const crofton::Camer
     const std::vector<cull::SpotLight> spots;
     cull::FroxelLights lit;
     cull::VisibleSet visible, candidates;
-    cull::ShadowReceivers receivers;
+    cull::CasterFilter receivers;
     Vector<std::uint64_t> drawn;
     const Result<boxtree::BoxTree> houses = boxtree::BoxTree::build(house_boxes);
     if (!houses) return report(houses.error());

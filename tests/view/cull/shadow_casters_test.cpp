@@ -80,7 +80,7 @@ TEST_SUITE("cull/shadow_casters") {
         const Frustum view = *frustum_of(Camera{});
         const Obb box{.center = {0.0, 0.0, -5.0}, .half_extents = glm::vec3(1.0f)};
         std::vector<Obb> receivers{box, box};
-        cull::ShadowReceivers set;
+        cull::CasterFilter set;
         CHECK(!set.wants(box));
         REQUIRE(set.set_sun(view, receivers, {0.0, 1.0, 0.0}).has_value());
         CHECK(set.wants(box));
@@ -114,7 +114,7 @@ TEST_SUITE("cull/shadow_casters") {
         const auto at = [](double x, double y, double z) {
             return Obb{.center = {x, y, z}, .half_extents = glm::vec3(0.5f)};
         };
-        cull::ShadowReceivers set;
+        cull::CasterFilter set;
         REQUIRE(set.set_sun(view, floor, {0.0, 1.0, 0.0}).has_value());
         CHECK(set.wants(at(0.0, 50.0, -10.0)));
         CHECK(set.wants(at(0.0, -1.0, -10.0)));
@@ -143,7 +143,7 @@ TEST_SUITE("cull/shadow_casters") {
             oracle::NearMisses random(trial);
             const double offset = trial % 5 == 4 ? 1e6 : 0.0;
             ShadowScene scene(random, offset);
-            cull::ShadowReceivers set;
+            cull::CasterFilter set;
             const int kind = int(trial % 3);
             if (scene.seen.empty()) continue;
             const glm::dvec3 toward = random.direction();
@@ -205,7 +205,7 @@ TEST_SUITE("cull/shadow_casters") {
         const Frustum view = *frustum_of(Camera{});
         const std::vector<Obb> receivers{{.center = {1.5, 0.0, -5.0}, .half_extents = glm::vec3(0.5f)}};
         const glm::dvec3 light(0.0, 4.0, -5.0);
-        cull::ShadowReceivers of_point, of_spot;
+        cull::CasterFilter of_point, of_spot;
         REQUIRE(of_point.set_point(view, receivers, {light, 20.0}).has_value());
         REQUIRE(of_spot.set_spot(view, receivers, {.apex = light, .axis = {0.0f, -1.0f, 0.0f}, .range = 20.0f}));
         for (int axis = 0; axis < 3; ++axis)
@@ -224,7 +224,7 @@ TEST_SUITE("cull/shadow_casters") {
         oracle::NearMisses random(7);
         const ShadowScene scene(random, 0.0);
         const glm::dvec3 toward(0.375, 1.0, 0.25);
-        cull::ShadowReceivers set;
+        cull::CasterFilter set;
         Vector<std::uint32_t> expected, casters;
         REQUIRE(set.set_sun(scene.view, scene.receivers, toward).has_value());
         set.find_casters(scene.casters, expected);
@@ -247,7 +247,7 @@ TEST_SUITE("cull/shadow_casters") {
         oracle::NearMisses random(2);
         const ShadowScene scene(random, 0.0);
         const testing::CountingMemory counting;
-        cull::ShadowReceivers set;
+        cull::CasterFilter set;
         Vector<std::uint32_t> casters;
         std::size_t warm = 0;
         for (int frame = 0; frame < 4; ++frame) {

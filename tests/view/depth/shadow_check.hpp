@@ -67,7 +67,7 @@ inline oracle::OwnerPicture rendered(const Scene& scene, std::span<const std::ui
 
 // Counts lookups, those in shadow, and those that are wrong with the casters that were `found`.
 inline void compare_shadows(const Scene& scene, const Roles& roles, const DrawnPicture& camera, const DrawnPicture& map,
-                            const depth::ShadowReceivers& receivers, std::span<const depth::VisibleCluster> found,
+                            const depth::DepthReceivers& receivers, std::span<const depth::VisibleCluster> found,
                             oracle::NearMisses& random, ShadowCheck& result) {
     const oracle::Rounding rounding{.wobble = random.index(2) == 0 ? 0.0 : 0.0006};
     const std::uint64_t seed = random.index(1000);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
+#include <string>
 #include <vector>
 
 #include "depth_scenes.hpp"
@@ -16,8 +18,8 @@ namespace {
 using depth::DepthCuller;
 using depth::DepthObject;
 using depth::DepthReceiver;
+using depth::DepthReceivers;
 using depth::PictureView;
-using depth::ShadowReceivers;
 using depth::VisibleCluster;
 
 struct View {
@@ -54,7 +56,8 @@ std::vector<DepthObject> objects_of(const Scene& scene, std::span<const std::uin
 
 std::vector<DepthReceiver> receivers_of(const Scene& scene, std::span<const std::uint32_t> which, const View& map) {
     std::vector<DepthReceiver> receivers;
-    for (const std::uint32_t i : which) receivers.push_back({glm::mat4(map.to_clip * scene.objects[i].world)});
+    for (const std::uint32_t i : which)
+        receivers.push_back({&scene.objects[i].mesh->clusters, glm::mat4(map.to_clip * scene.objects[i].world)});
     return receivers;
 }
 
@@ -264,7 +267,7 @@ TEST_SUITE("depth/shadow") {
         const Roles roles = everything(scene);
         const auto drawn = objects_of(scene, roles.drawn, camera), casters = objects_of(scene, roles.casters, light);
         std::vector<DepthReceiver> receivers = receivers_of(scene, roles.drawn, light);
-        const auto listed = [&](const ShadowReceivers& of) {
+        const auto listed = [&](const DepthReceivers& of) {
             return light_culler.find_casters(casters, light.size, of)->size();
         };
         REQUIRE(camera_culler.find_visible(drawn, camera.size));
@@ -294,7 +297,7 @@ TEST_SUITE("depth/shadow") {
         }
         REQUIRE(camera_culler.find_visible(drawn, camera.size));
 
-        const auto code_of = [&](const ShadowReceivers& of, const PictureView& map) {
+        const auto code_of = [&](const DepthReceivers& of, const PictureView& map) {
             return light_culler.find_casters(casters, map, of).error().code;
         };
         CHECK(code_of({}, light.size) == ErrorCode::invalid_argument);
@@ -304,8 +307,82 @@ TEST_SUITE("depth/shadow") {
             CHECK(code_of({&camera_culler, receivers, radius}, light.size) == ErrorCode::out_of_range);
         CHECK(code_of({&camera_culler, receivers}, {.width = 0}) == ErrorCode::out_of_range);
         CHECK(code_of({&camera_culler, receivers}, {.samples = 4}) == ErrorCode::out_of_range);
-        // A camera that has seen nothing.
-        CHECK(light_culler.find_casters(casters, light.size, {&(camera_culler = {}), {}})->empty());
+        // A camera that has seen nothing, and one that has not been asked.
+        REQUIRE(camera_culler.find_visible({}, camera.size));
+        CHECK(light_culler.find_casters(casters, light.size, {&camera_culler, {}})->empty());
+        camera_culler = {};
+        CHECK(code_of({&camera_culler, {}}, light.size) == ErrorCode::invalid_argument);
+    }
+
+    TEST_CASE("receivers that are not those of the camera's picture are refused, and nothing that is gone is read") {
+        const auto cube = [] {
+            const TriangleMesh mesh = cube_mesh();
+            return std::make_unique<depth::ClusteredMesh>(
+                depth::ClusteredMesh::cut(mesh.positions, mesh.indices).value());
+        };
+        // A floor before the camera, an object behind it, and a roof.
+        auto floor = cube(), behind = cube();
+        const auto roof = cube();
+        Camera lamp;
+        lamp.position = {0, 8, -9};
+        lamp.forward = {0, -1, 0};
+        lamp.up = {0, 0, -1};
+        const View camera = view_of({}, 160, 90), light = view_of(lamp, 128, 128);
+        const glm::dmat4 below = placed({0, -2, -9}, {4, 0.1, 4}, {0, 1, 0}, 0.0),
+                         away = placed({0, 0, 20}, {1, 1, 1}, {0, 1, 0}, 0.0),
+                         above = placed({0, 2, -9}, {1, 0.1, 1}, {0, 1, 0}, 0.0);
+        DepthCuller camera_culler, light_culler;
+        {
+            // The objects are gone after the call.
+            const std::vector<DepthObject> drawn = {{floor.get(), glm::mat4(camera.to_clip * below)},
+                                                    {behind.get(), glm::mat4(camera.to_clip * away)}};
+            REQUIRE(camera_culler.find_visible(drawn, camera.size));
+        }
+        const std::vector<DepthObject> casters = {{roof.get(), glm::mat4(light.to_clip * above)}};
+        std::vector<DepthReceiver> receivers = {{floor.get(), glm::mat4(light.to_clip * below)}, {}};
+        const auto answer = [&] { return light_culler.find_casters(casters, light.size, {&camera_culler, receivers}); };
+        const auto check_refused = [&] {
+            const auto refused = answer();
+            REQUIRE_FALSE(refused);
+            CHECK(refused.error().code == ErrorCode::invalid_argument);
+            CHECK(refused.error().item == 0);
+            CHECK(refused.error().message.find("another mesh") != std::string::npos);
+        };
+        REQUIRE(answer());
+        CHECK(answer()->size() == 1);
+        // Of an object of which nothing is seen no mesh is read, though it is gone.
+        behind.reset();
+        CHECK(answer()->size() == 1);
+        // A copy has the same clusters, and so has what moves.
+        const depth::ClusteredMesh copy = *floor;
+        receivers[0].mesh = &copy;
+        CHECK(answer()->size() == 1);
+        depth::ClusteredMesh moved = std::move(*floor);
+        receivers[0].mesh = &moved;
+        CHECK(answer()->size() == 1);
+        receivers[0].mesh = floor.get();
+        check_refused();
+        receivers[0].mesh = nullptr;
+        check_refused();
+        receivers[0].mesh = roof.get();
+        check_refused();
+        // Another mesh at the same place in memory.
+        *floor = *cube();
+        receivers[0].mesh = floor.get();
+        check_refused();
+        const auto loaded = depth::ClusteredMesh::deserialise(moved.serialise()).value();
+        receivers[0].mesh = &loaded;
+        check_refused();
+        // An answer that is not the camera's.
+        receivers[0].mesh = &moved;
+        DepthCuller other_light;
+        REQUIRE(other_light.find_casters(casters, light.size, {&camera_culler, receivers}));
+        const auto of_casters = light_culler.find_casters(casters, light.size, {&other_light, receivers});
+        REQUIRE_FALSE(of_casters);
+        CHECK(of_casters.error().code == ErrorCode::invalid_argument);
+        // A call that fails leaves the camera's answer.
+        CHECK_FALSE(camera_culler.find_visible({}, {.width = 0}));
+        CHECK(answer()->size() == 1);
     }
 
     TEST_CASE("any number of threads lists the same casters") {

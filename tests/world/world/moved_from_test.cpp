@@ -126,9 +126,9 @@ TEST_SUITE("world/moved_from") {
 
     TEST_CASE("receivers of shadows that have been moved from want no caster") {
         const Obb receivers[1] = {box_at({0, 0, -5}, 1.0f)};
-        cull::ShadowReceivers set;
+        cull::CasterFilter set;
         REQUIRE(set.set_sun(*frustum_of(Camera{}), receivers, {0, 1, 0}).has_value());
-        const cull::ShadowReceivers kept(std::move(set));
+        const cull::CasterFilter kept(std::move(set));
         CHECK(kept.wants(box_at({0, 3, -5}, 1.0f)));
         CHECK_FALSE(set.wants(box_at({0, 3, -5}, 1.0f)));
     }

@@ -232,6 +232,38 @@ TEST_SUITE("world/occlusion") {
                   .code != ErrorCode::out_of_memory);
     }
 
+    TEST_CASE("what hides an object is told until an update changes something") {
+        BehindAWall s;
+        REQUIRE(s.hides());
+        Vector<OccluderRef> occluders;
+        const auto check_told = [&](bool told) {
+            CHECK(s.world.hidden_by(s.behind, s.visible, occluders).has_value() == told);
+            CHECK(s.world.drawn_occluders(s.visible, occluders).has_value() == told);
+            if (told) return;
+            CHECK(error_of(s.world.drawn_occluders(s.visible, occluders)).code == ErrorCode::invalid_argument);
+            CHECK(error_of(s.world.drawn_occluders(s.visible, occluders)).message.find("changed since") !=
+                  std::string::npos);
+        };
+        check_told(true);
+        REQUIRE(s.world.update());
+        check_told(true);
+        // Occluders change with the next update.
+        REQUIRE(s.world.set_occluders(s.mesh, {}));
+        check_told(true);
+        REQUIRE(s.world.update());
+        check_told(false);
+        REQUIRE(s.world.view({.camera = Camera(), .occlusion = OcclusionOptions{}}, s.visible));
+        check_told(true);
+        REQUIRE(s.world.remove(s.wall));
+        check_told(true);
+        REQUIRE(s.world.update());
+        check_told(false);
+        // Another World at the same place.
+        REQUIRE(s.world.view({.camera = Camera(), .occlusion = OcclusionOptions{}}, s.visible));
+        s.world = World();
+        CHECK_FALSE(s.world.drawn_occluders(s.visible, occluders));
+    }
+
     TEST_CASE("an object that only occludes is in no answer") {
         World world;
         const auto mesh = world.add_mesh(description_of(cuboid({5.0f, 5.0f, 0.5f}), true)).value();

@@ -6,9 +6,11 @@
 
 #include <algorithm>
 #include <crofton/geometry/model_to_clip.hpp>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <set>
+#include <string>
 
 #include "../../box_mesh.hpp"
 #include "../../error_of.hpp"
@@ -173,7 +175,7 @@ TEST_SUITE("world/picture_view") {
             CHECK(casters.picture_statistics().triangles_listed <= all.picture_statistics().triangles_listed);
             const auto objects = drawn_by(town, camera), of_light = drawn_by(town, light);
             std::vector<depth::DepthReceiver> receivers;
-            for (const depth::DepthObject& o : of_light) receivers.push_back({o.to_clip});
+            for (const depth::DepthObject& o : of_light) receivers.push_back({o.mesh, o.to_clip});
             ShadowCheck c;
             compare_shadows(scene, roles, {picture, objects}, {map, of_light}, {nullptr, receivers, radius},
                             casters.triangles(), random, c);
@@ -458,6 +460,160 @@ TEST_SUITE("world/picture_view") {
         (void)world.update();
         const auto recut = depth::ClusteredMesh::cut(wider.positions, wider.indices);
         CHECK(world.clusters_of(mesh)->serialise() == recut->serialise());
+    }
+
+    TEST_CASE("a light's view refuses the camera's answer once the World has changed, whatever has changed") {
+        struct Stage {
+            World world;
+            MeshHandle mesh, other;
+            ObjectHandle floor, roof;
+            NodeHandle node;
+            RegionHandle region;
+        };
+        const TriangleMesh cube = cube_mesh(), slab = box_mesh({-5, -0.1f, -5}, {5, 0.1f, 5});
+        const auto describe = [](const TriangleMesh& mesh) {
+            return MeshDescription{.positions = mesh.positions, .indices = mesh.indices, .clusters = true};
+        };
+        const std::vector<RegionObject> below = {
+            {.bound = Obb{.center = {0, -50, 0}, .half_extents = glm::vec3(1.0f)}}};
+        const Region region = Region::prepare(below).value();
+        struct Change {
+            const char* name;
+            bool changes;
+            std::function<void(Stage&)> make;
+        };
+        const auto updated = [](Stage& s) { (void)s.world.update(); };
+        const std::vector<Change> changes = {
+            {"nothing", false, [](Stage&) {}},
+            {"an update of nothing", false, updated},
+            {"meshes are added", false,
+             [&](Stage& s) {
+                 for (int i = 0; i < 20; ++i) (void)s.world.add_mesh(describe(cube)).value();
+             }},
+            {"a transform waits for the update", false,
+             [&](Stage& s) {
+                 REQUIRE(s.world.set_transform(s.floor, {glm::dmat3(1.0), {0, -3, -8}}));
+             }},
+            {"vertices wait for the update", false,
+             [&](Stage& s) { REQUIRE(s.world.set_vertices(s.mesh, slab.positions)); }},
+            {"an object moves", true,
+             [&](Stage& s) {
+                 REQUIRE(s.world.set_transform(s.floor, {glm::dmat3(1.0), {0, -3, -8}}));
+                 updated(s);
+             }},
+            {"a node moves", true,
+             [&](Stage& s) {
+                 REQUIRE(s.world.set_transform(s.node, {glm::dmat3(1.0), {0, 1, 0}}));
+                 updated(s);
+             }},
+            {"an object comes", true,
+             [&](Stage& s) {
+                 (void)s.world.add({.mesh = s.mesh, .transform = Transform{glm::dmat3(1.0), {0, 3, -8}}}).value();
+                 updated(s);
+             }},
+            {"a mesh deforms", true,
+             [&](Stage& s) {
+                 TriangleMesh deformed = slab;  // within the same box
+                 std::swap(deformed.positions[0], deformed.positions[1]);
+                 REQUIRE(s.world.set_vertices(s.mesh, deformed.positions));
+                 updated(s);
+             }},
+            {"a mesh is replaced", true, [&](Stage& s) { REQUIRE(s.world.replace_mesh(s.mesh, describe(cube))); }},
+            {"an object gets another mesh", true,
+             [&](Stage& s) {
+                 REQUIRE(s.world.set_mesh(s.floor, s.other));
+                 updated(s);
+             }},
+            {"an object hides", true,
+             [&](Stage& s) {
+                 REQUIRE(s.world.set_hidden(s.roof, true));
+                 updated(s);
+             }},
+            {"a node is in other layers", true,
+             [&](Stage& s) {
+                 REQUIRE(s.world.set_layers(s.node, 2));
+                 updated(s);
+             }},
+            {"an object goes", true, [](Stage& s) { REQUIRE(s.world.remove(s.floor)); }},
+            {"a node goes with what hangs on it", true, [](Stage& s) { REQUIRE(s.world.remove(s.node)); }},
+            {"an object and its mesh go", true,
+             [](Stage& s) {
+                 REQUIRE(s.world.remove(s.floor));
+                 REQUIRE(s.world.remove(s.mesh));
+             }},
+            {"all goes, and other things come to its places", true,
+             [&](Stage& s) {
+                 for (const ObjectHandle object : {s.floor, s.roof}) REQUIRE(s.world.remove(object));
+                 for (const MeshHandle mesh : {s.mesh, s.other}) REQUIRE(s.world.remove(mesh));
+                 const MeshHandle mesh = s.world.add_mesh(describe(cube)).value();
+                 updated(s);
+                 for (int i = 0; i < 2; ++i)
+                     (void)s.world.add({.mesh = mesh, .transform = Transform{glm::dmat3(1.0), {0, 0, -8.0 - i}}})
+                         .value();
+                 updated(s);
+             }},
+            {"a region comes", true,
+             [&](Stage& s) {
+                 (void)s.world.attach(region, {0, 0, 0}).value();
+                 updated(s);
+             }},
+            {"a region goes", true,
+             [&](Stage& s) {
+                 REQUIRE(s.world.detach(s.region));
+                 updated(s);
+             }},
+            {"the World moves", false,
+             [](Stage& s) {
+                 World moved = std::move(s.world);
+                 s.world = std::move(moved);
+             }},
+            {"another World comes to its place", true,
+             [&](Stage& s) {
+                 s.world = World();
+                 const MeshHandle mesh = s.world.add_mesh(describe(cube)).value();
+                 (void)s.world.add({.mesh = mesh, .transform = Transform{glm::dmat3(1.0), {0, 0, -8}}}).value();
+                 updated(s);
+             }},
+        };
+        for (const Change& change : changes) {
+            const std::string name = change.name;
+            CAPTURE(name);
+            Stage s;
+            s.mesh = s.world.add_mesh(describe(slab)).value(), s.other = s.world.add_mesh(describe(cube)).value();
+            s.node = s.world.add_node().value();
+            s.region = s.world.attach(region, {1, 2, 3}).value();
+            s.floor = s.world.add({.mesh = s.mesh, .transform = Transform{glm::dmat3(1.0), {0, -2, -8}}}).value();
+            s.roof = s.world.add({.mesh = s.other, .node = s.node, .transform = Transform{glm::dmat3(1.0), {0, 2, -8}}})
+                         .value();
+            (void)s.world.update();
+            Camera lamp;
+            lamp.position = {0, 8, -8};
+            lamp.forward = {0, -1, 0};
+            lamp.up = {0, 0, -1};
+            const depth::PictureView picture{160, 90};
+            ViewResult seen, casters;
+            const ViewRequest of_camera{.camera = Camera{}, .picture = picture};
+            const ViewRequest of_lamp{.camera = lamp, .picture = picture, .receivers = ShadowReceivers{&seen}};
+            REQUIRE(s.world.view(of_camera, seen));
+            REQUIRE(s.world.view(of_lamp, casters));
+            CHECK(casters.size() == 2);
+            change.make(s);
+            ViewResult between;
+            REQUIRE(s.world.view(of_camera, between));
+            for (const bool of_many : {false, true}) {
+                MultiViewResult many;
+                const auto answer =
+                    of_many ? s.world.view(std::vector<ViewRequest>(2, of_lamp), many) : s.world.view(of_lamp, casters);
+                CHECK(answer.has_value() == !change.changes);
+                if (answer) continue;
+                CHECK(error_of(answer).code == ErrorCode::invalid_argument);
+                const std::string message = error_of(answer).message;
+                CHECK((message.find("changed since") != message.npos || message.find("this World") != message.npos));
+            }
+            (void)s.world.update();
+            REQUIRE(s.world.view(of_camera, seen));
+            CHECK(s.world.view(of_lamp, casters));
+        }
     }
 
     TEST_CASE("requests that cannot be obeyed are refused by name") {

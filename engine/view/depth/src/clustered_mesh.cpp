@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <crofton/core/drop_spare.hpp>
@@ -144,7 +145,13 @@ Result<ClusteredMesh> ClusteredMesh::cut(std::span<const glm::vec3> positions, s
     crofton::detail::drop_spare(mesh.clusters_);
     crofton::detail::drop_spare(mesh.coordinates_);
     crofton::detail::drop_spare(mesh.blocks_);
+    mesh.identity_ = next_identity();
     return mesh;
+}
+
+std::uint64_t ClusteredMesh::next_identity() {
+    static std::atomic<std::uint64_t> meshes{0};
+    return 1 + meshes.fetch_add(1, std::memory_order_relaxed);
 }
 
 void ClusteredMesh::permute(std::span<const std::uint32_t> indices, std::span<std::uint32_t> to) const {

@@ -28,14 +28,22 @@ Result<void> check(std::span<const DepthObject> objects, const PictureView& view
     return {};
 }
 
-// `seen`: objects in the camera's picture.
-Result<void> check(const ShadowReceivers& receivers, std::size_t seen, const PictureView& map) {
+// `drawn`: objects in the camera's picture; `seen`: those of which something is seen.
+Result<void> check(const DepthReceivers& receivers, std::size_t drawn, std::span<const SeenObject> seen,
+                   const PictureView& map) {
     if (map.samples != 1) return fail(ErrorCode::out_of_range, kNoItem, "depth: a shadow map has 1 sample per texel");
-    if (!ShadowReceivers::has_radius(receivers.radius))
+    if (!DepthReceivers::has_radius(receivers.radius))
         return fail(ErrorCode::out_of_range, kNoItem, "depth: the radius of lookups is 0.5 to 1,024 texels");
-    if (receivers.objects.size() != seen)
+    if (receivers.objects.size() != drawn)
         return fail(ErrorCode::invalid_argument, kNoItem,
                     "depth: there must be one receiver for each object of the camera's picture");
+    for (const SeenObject& object : seen) {
+        const ClusteredMesh* const mesh = receivers.objects[object.object].mesh;
+        if (mesh == nullptr || mesh->identity() != object.mesh)
+            return fail(ErrorCode::invalid_argument, object.object,
+                        "depth: a receiver has another mesh than in the camera's picture, or one that has been cut "
+                        "anew: find what the camera sees again");
+    }
     return {};
 }
 
@@ -60,6 +68,10 @@ struct DepthCuller::State {
     Vector<std::uint32_t> ends;
     Vector<std::uint8_t> looked_into;  // by object
     DepthStatistics statistics;
+    // Of find_visible(), for receivers of shadows.
+    bool has_picture = false;
+    std::size_t drawn = 0;    // objects that were given
+    Vector<SeenObject> seen;  // those that are listed
 
     // Of objects and a view that are checked.
     std::span<const VisibleCluster> find(std::span<const DepthObject> objects, const PictureView& view,
@@ -77,7 +89,21 @@ struct DepthCuller::State {
             if (samples > 1) add_samples(std::exchange(sum, {}));
             sum = statistics;
         }
+        keep_seen(!floors.empty());
+        frame.forget_objects();
         return sorted;
+    }
+
+    void keep_seen(bool of_light) {
+        has_picture = !of_light;
+        drawn = frame.objects().size();
+        seen.clear();
+        for (std::size_t i = 0; has_picture && i < sorted.size(); ++i) {
+            const std::uint32_t object = sorted[i].object;
+            if (i > 0 && sorted[i - 1].object == object) continue;
+            const DepthObject& given = frame.objects()[object];
+            seen.push_back({object, given.mesh->identity(), frame.data_of(object), given.position_error});
+        }
     }
 
     // Returns false if several strips did more together than the limit: what one walk would list is not known then.
@@ -198,17 +224,15 @@ Result<std::span<const VisibleCluster>> DepthCuller::find_visible(std::span<cons
 
 Result<std::span<const VisibleCluster>> DepthCuller::find_casters(std::span<const DepthObject> objects,
                                                                   const PictureView& map,
-                                                                  const ShadowReceivers& receivers,
-                                                                  Executor& executor) {
-    if (receivers.seen == nullptr || receivers.seen == this)
+                                                                  const DepthReceivers& receivers, Executor& executor) {
+    if (receivers.seen == nullptr || receivers.seen == this || !receivers.seen->state_->has_picture)
         return fail(ErrorCode::invalid_argument, kNoItem,
-                    "depth: casters need another culler, with what the camera sees");
+                    "depth: casters need another culler, whose last answer is what the camera sees");
     const State& seen = *receivers.seen->state_;
     if (auto checked = check(objects, map); !checked) return tl::unexpected(checked.error());
-    if (auto checked = check(receivers, seen.frame.objects().size(), map); !checked)
-        return tl::unexpected(checked.error());
+    if (auto checked = check(receivers, seen.drawn, seen.seen, map); !checked) return tl::unexpected(checked.error());
     const auto strips = seen.samples == 1 ? seen.walked() : std::span<const StripWalk>();
-    state_->receivers.find({seen.frame, seen.sorted, strips}, receivers, map);
+    state_->receivers.find({seen.frame.picture(), seen.seen, seen.sorted, strips}, receivers, map);
     if (state_->receivers.is_empty()) objects = {};
     return state_->find(objects, map, state_->receivers.floors(), executor);
 }

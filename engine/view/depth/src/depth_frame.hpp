@@ -21,6 +21,8 @@ class DepthFrame {
     // Of one of the picture's samples. `floors`: none, or for each tile a nearness that only what is nearer changes.
     void set(std::span<const DepthObject> objects, const PictureView& view, std::uint32_t sample,
              std::span<const float> floors, Executor& executor);
+    // They are the caller's, and may be gone after the call.
+    void forget_objects() { objects_ = {}; }
 
     [[nodiscard]] const PictureData& picture() const { return picture_; }    // without tiles
     [[nodiscard]] std::span<const float> floors() const { return floors_; }  // row by row, or none

@@ -66,26 +66,6 @@ std::array<double, 4> clip_of(const ObjectData& object, const glm::dvec3& point)
     return clip;
 }
 
-// The edge from corner k to the next, that is the longest in the picture; where a corner is behind the eye, in space.
-std::size_t longest_edge(const PictureData& picture, const ObjectData& object,
-                         const std::array<glm::dvec3, 3>& corners) {
-    std::array<glm::dvec2, 3> places;
-    bool before = true;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const std::array<double, 4> clip = clip_of(object, corners[k]);
-        before = before && clip[3] > 0.0;
-        places[k] = {clip[0] / clip[3] * double{picture.half_width}, clip[1] / clip[3] * double{picture.half_height}};
-    }
-    std::size_t longest = 0;
-    double most = -1.0;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const std::size_t n = (k + 1) % 3;
-        const double length = before ? glm::distance(places[k], places[n]) : glm::distance(corners[k], corners[n]);
-        if (length > most) longest = k, most = length;
-    }
-    return longest;
-}
-
 // How much the nearness of a triangle's plane changes from pixel to pixel, |across| + |up|; infinity if that is not
 // known. Planes: docs/notes/depth.md, "Near the eye".
 float slope_of(const PictureData& picture, const ObjectData& object, const std::array<glm::dvec3, 3>& corners) {
@@ -114,23 +94,21 @@ float slope_of(const PictureData& picture, const ObjectData& object, const std::
 
 }  // namespace
 
-void ReceiverMask::find(const SeenPicture& seen, const ShadowReceivers& receivers, const PictureView& map) {
+void ReceiverMask::find(const SeenPicture& seen, const DepthReceivers& receivers, const PictureView& map) {
     begin(seen, receivers, map);
-    for (std::size_t i = 0; i < seen.clusters.size() && !everything_;) {
-        const std::uint32_t object = seen.clusters[i].object;
-        std::size_t end = i;
-        while (end < seen.clusters.size() && seen.clusters[end].object == object) ++end;
-        const DepthObject& drawn = seen.frame.objects()[object];
-        in_picture_ = seen.frame.data_of(object);
-        add_interpolation_error(in_picture_, drawn.mesh->layout().largest);
-        add_object(receivers.objects[object], drawn, seen.clusters.subspan(i, end - i));
-        i = end;
+    std::span<const VisibleCluster> clusters = seen.clusters;
+    for (const SeenObject& object : seen.objects) {
+        if (everything_) return;
+        std::size_t count = 0;
+        while (count < clusters.size() && clusters[count].object == object.object) ++count;
+        add_object(receivers.objects[object.object], object, clusters.first(count));
+        clusters = clusters.subspan(count);
     }
 }
 
-void ReceiverMask::begin(const SeenPicture& seen, const ShadowReceivers& receivers, const PictureView& map) {
+void ReceiverMask::begin(const SeenPicture& seen, const DepthReceivers& receivers, const PictureView& map) {
     strips_ = seen.strips;
-    picture_ = seen.frame.picture();
+    picture_ = seen.picture;
     // Other samples are less than a pixel away.
     if (strips_.empty()) picture_.grid += 1.0f;
     const auto size = static_cast<float>(std::max(map.width, map.height));
@@ -158,18 +136,20 @@ void ReceiverMask::begin(const SeenPicture& seen, const ShadowReceivers& receive
     empty_ = true;
 }
 
-void ReceiverMask::add_object(const DepthReceiver& receiver, const DepthObject& drawn,
+void ReceiverMask::add_object(const DepthReceiver& receiver, const SeenObject& seen,
                               std::span<const VisibleCluster> clusters) {
-    const ClusteredMesh& mesh = *drawn.mesh;
+    const ClusteredMesh& mesh = *receiver.mesh;
+    in_picture_ = seen.in_picture;
+    add_interpolation_error(in_picture_, mesh.layout().largest);
     in_map_ = {};
     for (glm::length_t i = 0; i < 4; ++i) {
         const float share = i == 0 ? widened_.x : i == 1 ? widened_.y : i == 2 ? map_.z_sign : 1.0f;
         for (glm::length_t c = 0; c < 4; ++c) in_map_.columns[c][i] = share * receiver.to_map[c][i];
         for (int c = 0; c < 3; ++c) in_map_.moved[i] += std::abs(in_map_.columns[c][i]);
-        in_map_.moved[i] *= drawn.position_error;
+        in_map_.moved[i] *= seen.position_error;
     }
     add_interpolation_error(in_map_, mesh.layout().largest);
-    if (!(drawn.position_error >= 0.0f) || !can_be_placed(in_map_)) return mark_everything();
+    if (!(seen.position_error >= 0.0f) || !can_be_placed(in_map_)) return mark_everything();
     if (!receiver.solid) return add_clusters(mesh, clusters);
     boxes_.assign(1, mesh.bound());
     project_into_map();
@@ -230,9 +210,14 @@ void ReceiverMask::add_pieces() {
             const bool ends = in_map.is_unclear() ? level >= kMaxUnclearLevel
                                                   : level >= kMaxLevel || is_within(in_picture, kFewPixels) ||
                                                         is_within(in_map, coarse_);
-            if (!ends && splits_left_ > 0)
-                split(pieces_[i], in_picture, level);
-            else if (in_map.is_unclear())
+            if (!ends && splits_left_ > 0) {
+                const PictureTriangle placed = triangle_in_picture(pieces_[i]);
+                if (in_map.is_unclear() || is_worth_splitting(placed, in_picture)) {
+                    split(pieces_[i], placed, in_picture, level);
+                    continue;
+                }
+            }
+            if (in_map.is_unclear())
                 mark_everything();
             else
                 mark_rows(pieces_[i], boxes_[i], in_map);
@@ -241,14 +226,61 @@ void ReceiverMask::add_pieces() {
     }
 }
 
-void ReceiverMask::split(const Piece& piece, const Projection& in_picture, std::uint32_t level) {
+ReceiverMask::PictureTriangle ReceiverMask::triangle_in_picture(const Piece& piece) const {
+    PictureTriangle t;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const std::array<double, 4> clip = clip_of(in_picture_, piece.corners[k]);
+        t.before_eye = t.before_eye && clip[3] > 0.0;
+        t.corners[k] = {clip[0] / clip[3] * double{picture_.half_width} + double{picture_.middle_x},
+                        clip[1] / clip[3] * double{picture_.half_height} + double{picture_.middle_y},
+                        clip[2] / clip[3]};
+    }
+    return t;
+}
+
+// True if a part seems to be outside the picture or hidden, by pixels at a distance of some sixteen. It decides what is
+// worth the time: a piece that is not split is marked as it is.
+bool ReceiverMask::is_worth_splitting(const PictureTriangle& piece, const Projection& in_picture) const {
+    if (!piece.before_eye || strips_.empty()) return true;
+    constexpr int kMost = 16;
+    const int steps =
+        std::clamp(std::max(in_picture.x1 - in_picture.x0, in_picture.y1 - in_picture.y0) / kFewPixels, 2, kMost);
+    const glm::dvec3 &from = piece.corners[0], a = piece.corners[1] - from, b = piece.corners[2] - from;
+    const double area = a.x * b.y - a.y * b.x;
+    if (area == 0.0) return true;
+    const double across = (a.z * b.y - a.y * b.z) / area, up = (a.x * b.z - a.z * b.x) / area;
+    const auto width = static_cast<double>(picture_.tiles.width), height = static_cast<double>(picture_.tiles.height);
+    for (int i = 0; i < steps; ++i)
+        for (int j = 0; i + j < steps; ++j) {
+            const double u = (i + 1.0 / 3.0) / steps, v = (j + 1.0 / 3.0) / steps;
+            const double x = from.x + u * a.x + v * b.x, y = from.y + u * a.y + v * b.y;
+            if (!(x >= 0.0 && x < width && y >= 0.0 && y < height)) return true;
+            const auto column = static_cast<std::uint32_t>(x), row = static_cast<std::uint32_t>(y);
+            const double z = from.z + (column + 0.5 - from.x) * across + (row + 0.5 - from.y) * up;
+            if (double{nearness(column, row)} > z) return true;
+        }
+    return false;
+}
+
+void ReceiverMask::split(const Piece& piece, const PictureTriangle& placed, const Projection& in_picture,
+                         std::uint32_t level) {
     --splits_left_;
     Piece part = piece;
     if (level == 0) {
         part.nearest = in_picture.nearest;
         part.slope = slope_of(picture_, in_picture_, piece.corners);
     }
-    const std::size_t from = longest_edge(picture_, in_picture_, piece.corners), to = (from + 1) % 3;
+    // The longest edge in the picture; where a corner is behind the eye, in space.
+    std::size_t from = 0;
+    double longest = -1.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t n = (k + 1) % 3;
+        const double length = placed.before_eye
+                                  ? glm::distance(glm::dvec2(placed.corners[k]), glm::dvec2(placed.corners[n]))
+                                  : glm::distance(piece.corners[k], piece.corners[n]);
+        if (length > longest) from = k, longest = length;
+    }
+    const std::size_t to = (from + 1) % 3;
     const glm::dvec3 middle = 0.5 * (piece.corners[from] + piece.corners[to]);
     for (const std::size_t replaced : {from, to}) {
         part.corners = piece.corners;
@@ -280,6 +312,12 @@ bool ReceiverMask::is_seen(const Piece& piece, Projection p) const {
     const float move = picture_.grid + kMaxPixelError;
     p.nearest = std::min(piece.nearest, p.nearest + 4.0f * move * piece.slope);
     return !std::all_of(strips_.begin(), strips_.end(), [&](const StripWalk& strip) { return strip.hides(p); });
+}
+
+float ReceiverMask::nearness(std::uint32_t x, std::uint32_t y) const {
+    for (const StripWalk& strip : strips_)
+        if (strip.has_column(x / kTile)) return strip.nearness(x, y);
+    return kNothing;
 }
 
 void ReceiverMask::mark(const Projection& p) {

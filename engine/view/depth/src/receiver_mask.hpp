@@ -14,21 +14,30 @@
 #include <span>
 
 #include "culler_data.hpp"
-#include "depth_frame.hpp"
 #include "strip_walk.hpp"
 
 namespace crofton::depth {
 
+// An object of a camera's picture of which something is listed.
+struct SeenObject {
+    std::uint32_t object = 0;
+    std::uint64_t mesh = 0;  // ClusteredMesh::identity()
+    ObjectData in_picture{};
+    float position_error = 0.0f;
+};
+
 // What a camera's culler found.
 struct SeenPicture {
-    const DepthFrame& frame;
-    std::span<const VisibleCluster> clusters;  // by object
+    const PictureData& picture;  // without tiles
+    std::span<const SeenObject> objects;
+    std::span<const VisibleCluster> clusters;  // of those, in their order
     std::span<const StripWalk> strips;         // with the depth of all samples; none if a pixel has several
 };
 
 class ReceiverMask {
   public:
-    void find(const SeenPicture& seen, const ShadowReceivers& receivers, const PictureView& map);
+    // Requires receivers that are checked.
+    void find(const SeenPicture& seen, const DepthReceivers& receivers, const PictureView& map);
 
     // For each tile of the map, row by row: no point that is seen looks it up with a lesser nearness than this.
     // Infinity where none looks it up.
@@ -43,6 +52,11 @@ class ReceiverMask {
         float nearest = std::numeric_limits<float>::infinity();
         float slope = 0.0f;  // of its depth there, for each pixel: |across| + |up|
     };
+    // A piece in the camera's picture.
+    struct PictureTriangle {
+        std::array<glm::dvec3, 3> corners;  // pixels, and nearness
+        bool before_eye = true;             // all of it; else the corners mean nothing
+    };
     // Texels, and negated nearness. Lookups read what is up to `reach` away, with up to depth_error more or less.
     struct MapTriangle {
         std::array<glm::dvec3, 3> corners;
@@ -50,12 +64,14 @@ class ReceiverMask {
         double reach, depth_error;
     };
 
-    void begin(const SeenPicture& seen, const ShadowReceivers& receivers, const PictureView& map);
-    void add_object(const DepthReceiver& receiver, const DepthObject& drawn, std::span<const VisibleCluster> clusters);
+    void begin(const SeenPicture& seen, const DepthReceivers& receivers, const PictureView& map);
+    void add_object(const DepthReceiver& receiver, const SeenObject& seen, std::span<const VisibleCluster> clusters);
     void add_clusters(const ClusteredMesh& mesh, std::span<const VisibleCluster> clusters);
     void add_triangles(const ClusteredMesh& mesh, const VisibleCluster& cluster);
     void add_pieces();
-    void split(const Piece& piece, const Projection& in_picture, std::uint32_t level);
+    [[nodiscard]] PictureTriangle triangle_in_picture(const Piece& piece) const;
+    [[nodiscard]] bool is_worth_splitting(const PictureTriangle& piece, const Projection& in_picture) const;
+    void split(const Piece& piece, const PictureTriangle& placed, const Projection& in_picture, std::uint32_t level);
     // Projects boxes_ into the map: nearness is negated, so the bound is that of the farthest point.
     void project_into_map();
     void mark(const Projection& in_map);  // the whole rectangle
@@ -66,6 +82,7 @@ class ReceiverMask {
     // True of points that the light does not see: behind it, or before the near plane.
     [[nodiscard]] bool is_before_light(const Cluster& box) const;
     [[nodiscard]] bool is_seen(const Piece& piece, Projection in_picture) const;
+    [[nodiscard]] float nearness(std::uint32_t x, std::uint32_t y) const;  // of a pixel of the camera's picture
 
     PictureData map_{}, picture_{};
     ObjectData in_map_{}, in_picture_{};  // of the object at hand

@@ -172,6 +172,7 @@ Result<ClusteredMesh> ClusteredMesh::deserialise(std::span<const std::byte> byte
     if (auto checked = StoredMesh::check_order(mesh.order_); !checked) return tl::unexpected(checked.error());
     if (auto checked = StoredMesh::check_blocks(mesh); !checked) return tl::unexpected(checked.error());
     if (!StoredMesh::are_within(mesh.coordinates_, mesh.largest_)) return damaged("a coordinate is beyond the mesh's");
+    mesh.identity_ = next_identity();
     return mesh;
 }
 

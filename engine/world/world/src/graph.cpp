@@ -78,6 +78,7 @@ Result<void> World::replace_mesh(MeshHandle mesh, const MeshDescription& descrip
     if (!clusters) return tl::unexpected(clusters.error());
     auto replaced = state_->scene.replace_mesh(mesh.index, std::move(replacement));
     if (!replaced) return replaced;
+    state_->note_removal();
     state_->mesh_clusters.set(mesh.index, std::move(*clusters), state_->scene.mesh_revision(mesh.index));
     state_->shapes.set_mesh(mesh.index, description.triangles);
     return state_->occluders.set(mesh.index, found.occluders);
@@ -99,6 +100,7 @@ Result<void> World::remove(MeshHandle mesh) {
     if (auto known = state_->check(mesh, mesh.index); !known) return known;
     auto removed = state_->scene.remove_mesh(mesh.index);
     if (!removed) return removed;
+    state_->note_removal();
     state_->meshes.remove(mesh.index);
     state_->occluders.clear(mesh.index);
     state_->mesh_clusters.clear(mesh.index);

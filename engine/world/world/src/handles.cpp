@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Whose handle is it? Generations tell one user of an index from the next, and one World from another.
+// Whose handle is it, and of when is an answer? Generations tell one user of an index from the next, and one World from
+// another.
 #include <atomic>
 
 #include "object_table.hpp"
@@ -12,6 +13,11 @@ std::uint32_t next_first_generation() {
     static std::atomic<std::uint32_t> worlds{0};
     const std::uint32_t first = 1 + worlds.fetch_add(1, std::memory_order_relaxed) * 0x9e3779b9u;
     return first == 0 ? 1 : first;
+}
+
+std::uint64_t next_revision() {
+    static std::atomic<std::uint64_t> revisions{0};
+    return 1 + revisions.fetch_add(1, std::memory_order_relaxed);
 }
 
 Result<void> refuse(const char* thing, std::uint32_t index, std::uint32_t generation,

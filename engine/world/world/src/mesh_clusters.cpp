@@ -46,7 +46,8 @@ MeshClusters::Mesh MeshClusters::take(scene::MeshId mesh) {
     return mesh < meshes_.size() ? std::exchange(meshes_[mesh], Mesh()) : Mesh();
 }
 
-void MeshClusters::update(const scene::Scene& scene) {
+bool MeshClusters::update(const scene::Scene& scene) {
+    bool changed = false;
     for (scene::MeshId id = 0; id < meshes_.size(); ++id) {
         Mesh& mesh = meshes_[id];
         if (!mesh.wanted || scene.is_mesh_removed(id) || mesh.revision == scene.mesh_revision(id)) continue;
@@ -54,7 +55,9 @@ void MeshClusters::update(const scene::Scene& scene) {
         auto cut = depth::ClusteredMesh::cut(scene.mesh(id).positions, scene.mesh(id).indices);
         mesh.usable = cut.has_value();
         if (cut) mesh.cut = std::move(*cut);
+        changed = true;
     }
+    return changed;
 }
 
 }  // namespace crofton::world

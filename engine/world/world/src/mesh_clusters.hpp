@@ -23,8 +23,8 @@ class MeshClusters {
     void set(scene::MeshId mesh, Mesh cut, std::uint64_t revision);
     void clear(scene::MeshId mesh);
     [[nodiscard]] Mesh take(scene::MeshId mesh);  // the mesh has none then
-    // Cuts what has changed since.
-    void update(const scene::Scene& scene);
+    // Cuts what has changed since. Returns whether anything has.
+    bool update(const scene::Scene& scene);
 
     [[nodiscard]] const Mesh* find(scene::MeshId mesh) const {
         return mesh < meshes_.size() && meshes_[mesh].usable ? &meshes_[mesh] : nullptr;

@@ -44,6 +44,9 @@ void release(Lists&... lists) {
 // that a handle of another World is no one's here. The first begins at 1.
 [[nodiscard]] std::uint32_t next_first_generation();
 
+// Unlike any other of the process, and not 0.
+[[nodiscard]] std::uint64_t next_revision();
+
 // Makes the handles of this generation stale. A handle that is all 0 names nothing: in C that is one that was never
 // set.
 inline void renew(std::uint32_t& generation) {

@@ -126,6 +126,7 @@ void World::State::mark_removed(std::uint32_t object) {
     table.remove(object);
     movers.forget(object);
     removed.push_back(object);
+    note_removal();
 }
 
 Result<void> World::remove(ObjectHandle handle) {

@@ -208,10 +208,12 @@ void Occluders::change_object(std::uint32_t id, const ObjectTable& table, const 
     place(id, transform, layers);
 }
 
-void Occluders::update(const ObjectTable& table, const scene::Scene& scene) {
+bool Occluders::update(const ObjectTable& table, const scene::Scene& scene) {
+    const bool changed = !changed_meshes_.empty() || !changed_objects_.empty();
     if (!changed_meshes_.empty()) change_meshes(table);
     for (const std::uint32_t object : changed_objects_) change_object(object, table, scene);
     changed_objects_.clear();
+    return changed;
 }
 
 }  // namespace crofton::world

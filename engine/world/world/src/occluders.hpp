@@ -26,11 +26,12 @@ class Occluders {
     void note(std::uint32_t object) {
         if (any_) changed_objects_.push_back(object);
     }
-    void update(const ObjectTable& table, const scene::Scene& scene);
+    // Returns whether anything has changed.
+    bool update(const ObjectTable& table, const scene::Scene& scene);
 
     // Of regions' objects: adds what has come, and takes away what has gone, as much as an update has time for. The
-    // rest hides nothing meanwhile.
-    void update_regions(const Regions& regions);
+    // rest hides nothing meanwhile. Returns whether any has come or gone.
+    bool update_regions(const Regions& regions);
     // How many objects of attached regions wait for that.
     [[nodiscard]] std::size_t waiting_count() const { return waiting_count_; }
     // Whether its object is one of a region, and detached or hidden.

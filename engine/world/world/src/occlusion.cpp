@@ -47,11 +47,11 @@ Result<void> World::set_occludes(ObjectHandle object, bool occludes) {
     return {};
 }
 
-void World::State::update_occluders() {
-    occluders.update_regions(regions);
+bool World::State::update_occluders() {
+    bool changed = occluders.update_regions(regions);
     statistics.occluders_waiting = occluders.waiting_count();
-    if (!occluders.any()) return;
-    occluders.update(table, scene);
+    if (!occluders.any()) return changed;
+    changed |= occluders.update(table, scene);
     // Roughly: the bounds only tell how much lies behind an occluder.
     object_bounds = regions.bounds();
     const boxtree::Structure& tree = index.tree().structure();
@@ -62,18 +62,21 @@ void World::State::update_occluders() {
                                    double{box.half_extents.z});
         object_bounds.include({box.center - l1_radius, box.center + l1_radius});
     }
+    return changed;
 }
 
-Result<void> World::State::check_viewed(const world::ObjectNames* viewed) const {
-    if (!viewed || viewed == &table.names) return {};
+Result<void> World::State::check_viewed(const ViewResult& visible) const {
+    if (!visible.names_ || visible.revision_.update == revision.update) return {};
     return fail(ErrorCode::invalid_argument, kNoItem,
-                "world: the visible objects are of a view of another World: ask the one that was viewed");
+                visible.names_ != &table.names
+                    ? "world: the visible objects are of a view of another World: ask the one that was viewed"
+                    : "world: the World has changed since the view: view again");
 }
 
 Result<void> World::hidden_by(ObjectHandle object, const ViewResult& visible, Vector<OccluderRef>& occluders) const {
     const bool of_region = state_->regions.contains(object);
     if (auto known = state_->check(object, object.index); !of_region && !known) return known;
-    if (auto own = state_->check_viewed(visible.names_); !own) return own;
+    if (auto own = state_->check_viewed(visible); !own) return own;
     occluders.clear();
     if (!visible.has_occlusion() || (!of_region && !state_->index.has_box(object.index))) return {};
     Vector<occlude::OccluderId> ids;
@@ -87,7 +90,7 @@ Result<void> World::hidden_by(ObjectHandle object, const ViewResult& visible, Ve
 }
 
 Result<void> World::drawn_occluders(const ViewResult& visible, Vector<OccluderRef>& occluders) const {
-    if (auto own = state_->check_viewed(visible.names_); !own) return own;
+    if (auto own = state_->check_viewed(visible); !own) return own;
     occluders.clear();
     if (!visible.has_occlusion()) return {};
     for (const occlude::OccluderId id : visible.occluded_->choice.ids) {

@@ -67,7 +67,8 @@ void PictureView::place_receivers(const PictureView& seen, const ViewMatrix& vie
     for (std::size_t i = 0; i < receivers_.size(); ++i) {
         if (seen.seen_[seen.places_[i]] == 0) continue;
         const Drawn drawn = drawn_of(seen.object_ids_[i]);
-        receivers_[i] = {object_of(drawn, view).to_clip, drawn.clusters == nullptr};
+        const depth::DepthObject in_map = object_of(drawn, view);
+        receivers_[i] = {in_map.mesh, in_map.to_clip, drawn.clusters == nullptr};
     }
 }
 

@@ -75,7 +75,7 @@ std::size_t Occluders::take_some(RegionHolder& holder, std::size_t budget) {
     return cost;
 }
 
-void Occluders::update_regions(const Regions& regions) {
+bool Occluders::update_regions(const Regions& regions) {
     for (const std::uint32_t slot : regions.changed()) {
         const Attachment& attached = regions.at_slot(slot);
         const RegionHandle handle{slot, attached.generation};
@@ -103,6 +103,7 @@ void Occluders::update_regions(const Regions& regions) {
     };
     region_holders_.erase(std::remove_if(region_holders_.begin(), region_holders_.end(), is_done),
                           region_holders_.end());
+    return left < kBudget;
 }
 
 }  // namespace crofton::world

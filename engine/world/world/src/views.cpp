@@ -128,7 +128,9 @@ void World::State::find_triangles(const ViewRequest& request, const world::Pictu
         [&](std::uint32_t id) -> world::PictureView::Drawn {
             if (world::is_region_index(id)) return regions.drawn(id);
             const world::Object& object = table.objects[id];
-            const auto* const clusters = object.kind == BoundKind::none ? mesh_clusters.find(object.mesh) : nullptr;
+            // One that has been removed, in this World's list until the next update, hides nothing.
+            const bool has_mesh = object.alive && object.kind == BoundKind::none;
+            const auto* const clusters = has_mesh ? mesh_clusters.find(object.mesh) : nullptr;
             if (clusters == nullptr) return {.box = index.box(id)};
             const Transform& world = scene.world(scene.node_of(object.instance));
             return {.clusters = clusters,
@@ -182,10 +184,12 @@ Result<void> World::check_receivers(const ViewRequest& request, const ViewResult
     if (!request.picture) return refuse("view: receivers need a `picture`, the shadow map");
     if (seen == nullptr || !seen->has_picture() || seen->names_ != &state_->table.names)
         return refuse("view: receivers need the answer to a view of this World with a picture");
+    if (seen->revision_ != state_->revision)
+        return refuse("view: the World has changed since the view that `receivers` has the answer to: view it again");
     if (seen == visible) return refuse("view: a light's answer cannot replace that of its receivers");
     if (request.picture->samples != 1)
         return fail(ErrorCode::out_of_range, item, "view: a shadow map has 1 sample per texel");
-    if (!depth::ShadowReceivers::has_radius(request.receivers->radius))
+    if (!depth::DepthReceivers::has_radius(request.receivers->radius))
         return fail(ErrorCode::out_of_range, item, "view: the radius of lookups is 0.5 to 1,024 texels");
     return {};
 }
@@ -207,6 +211,7 @@ void World::view_own(const ViewRequest& request, const world::Eye& eye, ViewResu
     if (!request.occlusion) {
         const world::TraceZone zone(state_->options.trace, "World::view");
         visible.names_ = &state_->table.names;
+        visible.revision_ = state_->revision;
         visible.hides_ = false;
         cull::find_visible(state_->index.tree(), state_->index.moving(), eye.plain, visible.set_, how, executor);
         world::trace_count(state_->options.trace, "objects in view", visible.set_.size());
@@ -224,6 +229,7 @@ void World::view_own(const ViewRequest& request, const world::Eye& eye, ViewResu
     result.resize(request.occlusion->size);
     state_->draw_and_ask(eye.occluding, *request.occlusion, request.layers, how, executor, result);
     visible.names_ = &state_->table.names;
+    visible.revision_ = state_->revision;
     visible.hides_ = true;
     result.occluded.clear();
     result.by_tree = request.order == cull::ResultOrder::tree;

@@ -201,7 +201,10 @@ void World::State::note_movers() {
 
 // What the scene's nodes have moved.
 Result<void> World::State::apply_scene(Executor& executor) {
+    scene_changed = !staged.empty() || !removed.empty();
     const scene::UpdateStatistics updated = scene.update(executor);
+    scene_changed |= updated.nodes_updated > 0 || !scene.moved_instances().empty() ||
+                     !scene.relayered_instances().empty() || !scene.removed_instances().empty();
     statistics.nodes_updated = updated.nodes_updated;
     statistics.out_of_range = updated.instances_invalid;
     index.commit();
@@ -213,7 +216,7 @@ Result<void> World::State::apply_scene(Executor& executor) {
     }
     auto scaled = update_shapes();
     pair_changes.all_contacts |= shapes.update(scene, executor);
-    mesh_clusters.update(scene);
+    scene_changed |= mesh_clusters.update(scene);
     return scaled;
 }
 
@@ -242,12 +245,13 @@ Result<void> World::update(Executor& executor) {
     }();
     s.note_movers();
     const bool regions_changed = s.regions.update();
-    {
+    const bool occluders_changed = [&] {
         const world::TraceZone part(trace, "update: occluders");
-        s.update_occluders();
-    }
+        return s.update_occluders();
+    }();
     Result<void> found;
     const bool changed = changes.boxes > 0 || s.pair_changes.any() || regions_changed;
+    if (changed || s.scene_changed || occluders_changed) s.revision.update = world::next_revision();
     const auto start = std::chrono::steady_clock::now();
     if (s.options.pairs && changed) {
         const world::TraceZone part(trace, "update: pairs and contacts");

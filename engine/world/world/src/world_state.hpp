@@ -73,6 +73,8 @@ struct World::State {
 
     WorldOptions options;
     WorldStatistics statistics;
+    world::Revision revision{world::next_revision(), 0};
+    bool scene_changed = false;  // in this update: objects, nodes or clusters
     world::ObjectTable table;
     world::SpatialIndex index;
     world::MoverTable movers;
@@ -101,7 +103,9 @@ struct World::State {
     [[nodiscard]] Result<void> check(ObjectHandle object, std::uint64_t item) const;
     [[nodiscard]] Result<void> check(NodeHandle node, std::uint64_t item) const;
     [[nodiscard]] Result<void> check(MeshHandle mesh, std::uint64_t item) const;
-    [[nodiscard]] Result<void> check_viewed(const world::ObjectNames* viewed) const;
+    // Whether the occluders that a view drew are those of now.
+    [[nodiscard]] Result<void> check_viewed(const ViewResult& visible) const;
+    void note_removal() { revision.removal = world::next_revision(); }
     StagedChange& stage(std::uint32_t object);
     [[nodiscard]] Result<void> attach_mesh(world::Object& object, const ObjectDescription& description);
     [[nodiscard]] Result<scene::MeshId> mesh_of(const ObjectDescription& description);
@@ -145,7 +149,7 @@ struct World::State {
     [[nodiscard]] std::span<const Contact> own_contacts() const {
         return ground.is_used() ? ground.contacts() : finder.contacts();
     }
-    void update_occluders();
+    [[nodiscard]] bool update_occluders();  // returns whether any has come, gone or moved
     void release_scratch();
     [[nodiscard]] Result<void> set_found_occluders(scene::MeshId mesh, const occlude::FindOptions& how);
     // CullOptions::candidate_mask, in `both`, with the bits of objects that have moved or reuse an index.

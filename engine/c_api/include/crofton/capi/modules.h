@@ -49,6 +49,7 @@ typedef struct crofton_depth_statistics {
 
 /* Where an object of a camera's picture lies in a light's shadow map. */
 typedef struct crofton_depth_receiver {
+    const crofton_clustered_mesh* mesh; /* that of the picture; may be NULL if nothing of the object was listed */
     float to_map[16]; /* column-major; takes positions of the mesh to clip space of the map, as the shader does */
     uint32_t solid;   /* 1: anything within the mesh's bound may be seen, and not its triangles only */
 } crofton_depth_receiver;
@@ -56,8 +57,8 @@ typedef struct crofton_depth_receiver {
 /* What looks a shadow map up: the points of what a camera sees. */
 typedef struct crofton_depth_receivers {
     size_t size;
-    const crofton_depth_culler* seen;      /* NULL: set it. It has answered crofton_depth_culler_find_visible for the
-                                              camera's picture; the meshes of that call must still be there */
+    const crofton_depth_culler* seen;      /* NULL: set it. Its last answer is that of
+                                              crofton_depth_culler_find_visible for the camera's picture */
     const crofton_depth_receiver* objects; /* one for each object of that call */
     size_t object_count;
     double radius; /* 1; as in crofton_shadow_receivers */
@@ -98,7 +99,8 @@ CROFTON_API crofton_status crofton_depth_culler_find_visible(crofton_depth_culle
  * crofton_depth_culler_find_visible. `objects` are the casters, with matrices to the clip space of the shadow map. Draw
  * the listed triangles into the map: each lookup by a point of what the camera sees then gives the same as with all
  * casters. This holds for comparisons with the point's depth, or one nearer to the light; the guide says what else the
- * renderer must do. */
+ * renderer must do. CROFTON_INVALID_ARGUMENT, whose item is the object: it was listed in the camera's picture with
+ * another mesh than its receiver has. */
 CROFTON_API crofton_status crofton_depth_culler_find_casters(
     crofton_depth_culler* culler, const crofton_depth_object* objects, size_t object_count,
     const crofton_picture_view* map, const crofton_depth_receivers* receivers, const crofton_jobs* jobs,

@@ -86,7 +86,8 @@ typedef struct crofton_view_result crofton_view_result; /* the answer of one to 
 typedef struct crofton_shadow_receivers {
     size_t size;
     const crofton_view_result* seen; /* NULL: set it. The answer to the camera's view alone, which had a picture; not
-                                        that of the light. The World must not have changed since */
+                                        that of the light. It holds until an update changes something, an object or a
+                                        mesh is removed, or a mesh is replaced */
     double radius; /* 1; 0.5 to 1024. A lookup reads texels whose centres are at most this far from its point along each
                       axis: 0.5 for the nearest texel, 1 for a bilinear comparison, r + 1 for one in each of (2 r + 1)^2
                       texels */

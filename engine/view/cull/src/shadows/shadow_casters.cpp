@@ -95,13 +95,13 @@ FaceBody body_of(const Obb& box, const glm::dvec3& origin, const glm::dvec3 (&ax
 
 }  // namespace
 
-// The work on one ShadowReceivers.
+// The work on one CasterFilter.
 class ReceiverPass {
   public:
-    explicit ReceiverPass(const ShadowReceivers& set) : set_(set) {}
+    explicit ReceiverPass(const CasterFilter& set) : set_(set) {}
 
     // The box's rectangle in a face's picture; all of it if the box reaches level with or behind the light.
-    [[nodiscard]] Rectangle2 rectangle_of(const Obb& box, const ShadowReceivers::Face& face) const {
+    [[nodiscard]] Rectangle2 rectangle_of(const Obb& box, const CasterFilter::Face& face) const {
         Rectangle2 result{{{kFar, -kFar}, {kFar, -kFar}}};
         for (const glm::dvec3& corner : corners(box)) {
             const glm::dvec3 d = corner - set_.origin_;
@@ -145,7 +145,7 @@ class ReceiverPass {
         return rectangle_of(Tiles{{i, j}, {i + 1, j + 1}}, set_.faces_[f]);
     }
 
-    [[nodiscard]] Tiles tiles_of(const Rectangle2& rectangle, const ShadowReceivers::Face& face) const {
+    [[nodiscard]] Tiles tiles_of(const Rectangle2& rectangle, const CasterFilter::Face& face) const {
         Tiles result{};
         for (int k = 0; k < 2; ++k) {
             const double most = set_.tiles_;
@@ -158,7 +158,7 @@ class ReceiverPass {
         return result;
     }
 
-    [[nodiscard]] Rectangle2 rectangle_of(const Tiles& tiles, const ShadowReceivers::Face& face) const {
+    [[nodiscard]] Rectangle2 rectangle_of(const Tiles& tiles, const CasterFilter::Face& face) const {
         Rectangle2 result;
         for (int k = 0; k < 2; ++k) {
             const double low = face.low[k] + tiles.first[k] * face.size[k],
@@ -172,7 +172,7 @@ class ReceiverPass {
     // visit(tile index, depths of the body in it) until it returns true.
     template <class Visit>
     bool visit_tiles(const Obb& box, std::uint32_t f, const Visit& visit) const {
-        const ShadowReceivers::Face& face = set_.faces_[f];
+        const CasterFilter::Face& face = set_.faces_[f];
         const FaceBody body = body_of(box, set_.origin_, face.axes);
         const Tiles tiles = tiles_of(rectangle_of(box, face), face);
         return visit_tiles(body, f, tiles, visit);
@@ -193,7 +193,7 @@ class ReceiverPass {
         return visit_tiles(body, f, tiles, visit) || visit_tiles(body, f, other, visit);
     }
 
-    static Result<void> start(ShadowReceivers& set, const Frustum& view, std::span<const Obb> receivers,
+    static Result<void> start(CasterFilter& set, const Frustum& view, std::span<const Obb> receivers,
                               std::uint32_t tiles) {
         set.face_count_ = 0;
         set.tiles_ = tiles;
@@ -207,7 +207,7 @@ class ReceiverPass {
     }
 
     // Faces, origin and range are set.
-    static void fill(ShadowReceivers& set, const Frustum& view, std::span<const Obb> receivers) {
+    static void fill(CasterFilter& set, const Frustum& view, std::span<const Obb> receivers) {
         const ReceiverPass pass(set);
         set.grid_.assign(std::size_t{set.face_count_} * set.tiles_ * set.tiles_, {});
         double extent = 0.0;
@@ -222,7 +222,7 @@ class ReceiverPass {
                     const Interval view_depth = depths(seen, rectangle, set.is_sun_);
                     depth = {std::max(depth.low, view_depth.low), std::min(depth.high, view_depth.high)};
                     if (depth.is_empty() || !pass.is_in_range(rectangle, depth.low)) return false;
-                    ShadowReceivers::Tile& tile = set.grid_[at];
+                    CasterFilter::Tile& tile = set.grid_[at];
                     tile.nearest = std::min(tile.nearest, depth.low);
                     tile.farthest = std::max(tile.farthest, depth.high);
                     return false;
@@ -230,10 +230,10 @@ class ReceiverPass {
         }
     }
 
-    static void add_cube(ShadowReceivers& set) {
+    static void add_cube(CasterFilter& set) {
         set.face_count_ = 6;
         for (int f = 0; f < 6; ++f) {
-            ShadowReceivers::Face& face = set.faces_[f];
+            CasterFilter::Face& face = set.faces_[f];
             for (int k = 0; k < 3; ++k) {
                 face.axes[k] = glm::dvec3(0.0);
                 face.axes[k][(f / 2 + 1 + k) % 3] = k == 2 && f % 2 ? -1.0 : 1.0;
@@ -243,7 +243,7 @@ class ReceiverPass {
     }
 
     // Slightly larger than `picture`.
-    static void set_picture(const ShadowReceivers& set, ShadowReceivers::Face& face, const Rectangle2& picture) {
+    static void set_picture(const CasterFilter& set, CasterFilter::Face& face, const Rectangle2& picture) {
         for (int k = 0; k < 2; ++k) {
             const Interval& side = picture.side[k];
             const double more =
@@ -253,7 +253,7 @@ class ReceiverPass {
         }
     }
 
-    static void set_axes(ShadowReceivers::Face& face, const glm::dvec3& along) {
+    static void set_axes(CasterFilter::Face& face, const glm::dvec3& along) {
         const glm::dvec3 w = glm::normalize(along), a = glm::abs(w);
         const glm::dvec3 other = a.x <= a.y && a.x <= a.z ? glm::dvec3(1, 0, 0)
                                  : a.y <= a.z             ? glm::dvec3(0, 1, 0)
@@ -266,11 +266,11 @@ class ReceiverPass {
   private:
     static constexpr double kFar = std::numeric_limits<double>::infinity(), kTileMargin = 0x1p-20;
 
-    const ShadowReceivers& set_;
+    const CasterFilter& set_;
 };
 
-Result<void> ShadowReceivers::set_sun(const Frustum& view, std::span<const Obb> receivers,
-                                      const glm::dvec3& toward_light, double shadow_length, std::uint32_t tiles) {
+Result<void> CasterFilter::set_sun(const Frustum& view, std::span<const Obb> receivers, const glm::dvec3& toward_light,
+                                   double shadow_length, std::uint32_t tiles) {
     if (auto valid = ReceiverPass::start(*this, view, receivers, tiles); !valid) return valid;
     if (!is_finite(toward_light) || toward_light == glm::dvec3(0.0) || !(shadow_length >= 0.0))
         return fail(ErrorCode::invalid_argument, kNoItem,
@@ -304,8 +304,8 @@ Result<void> ShadowReceivers::set_sun(const Frustum& view, std::span<const Obb> 
     return {};
 }
 
-Result<void> ShadowReceivers::set_point(const Frustum& view, std::span<const Obb> receivers, const Sphere& light,
-                                        std::uint32_t tiles) {
+Result<void> CasterFilter::set_point(const Frustum& view, std::span<const Obb> receivers, const Sphere& light,
+                                     std::uint32_t tiles) {
     if (auto valid = ReceiverPass::start(*this, view, receivers, tiles); !valid) return valid;
     if (!is_usable(light))
         return fail(ErrorCode::invalid_argument, kNoItem, "shadow receivers: the light is not finite or negative");
@@ -317,8 +317,8 @@ Result<void> ShadowReceivers::set_point(const Frustum& view, std::span<const Obb
     return {};
 }
 
-Result<void> ShadowReceivers::set_spot(const Frustum& view, std::span<const Obb> receivers, const SpotLight& light,
-                                       std::uint32_t tiles) {
+Result<void> CasterFilter::set_spot(const Frustum& view, std::span<const Obb> receivers, const SpotLight& light,
+                                    std::uint32_t tiles) {
     const double cosine = static_cast<double>(light.cos_half_angle);
     const glm::dvec3 axis(light.axis);
     if (!(cosine >= 0.0 && cosine <= 1.0) || !is_finite(axis) || axis == glm::dvec3(0.0)) {
@@ -341,7 +341,7 @@ Result<void> ShadowReceivers::set_spot(const Frustum& view, std::span<const Obb>
     return {};
 }
 
-bool ShadowReceivers::wants(const Obb& caster) const {
+bool CasterFilter::wants(const Obb& caster) const {
     if (!validate(caster)) return true;
     const ReceiverPass pass(*this);
     for (std::uint32_t f = 0; f < face_count_; ++f)
@@ -354,7 +354,7 @@ bool ShadowReceivers::wants(const Obb& caster) const {
     return false;
 }
 
-void ShadowReceivers::find_casters(std::span<const Obb> casters, Vector<std::uint32_t>& wanted) const {
+void CasterFilter::find_casters(std::span<const Obb> casters, Vector<std::uint32_t>& wanted) const {
     wanted.clear();
     for (std::size_t i = 0; i < casters.size(); ++i)
         if (wants(casters[i])) wanted.push_back(static_cast<std::uint32_t>(i));

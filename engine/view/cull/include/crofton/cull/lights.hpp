@@ -125,7 +125,7 @@ class FroxelLights {
 // caster is wanted if in some tile it reaches nearer than the farthest of them. A caster is never refused if its shadow
 // falls on a point of a receiver's box within the view. How many others are wanted depends on the number of tiles.
 // Keeps its memory: setting it again for as many tiles allocates nothing.
-class ShadowReceivers {
+class CasterFilter {
   public:
     static constexpr std::uint32_t kDefaultTiles = 128;  // along each side of the picture, or of a cube's face
 

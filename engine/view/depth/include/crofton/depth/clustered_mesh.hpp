@@ -53,6 +53,8 @@ class ClusteredMesh {
     [[nodiscard]] std::span<const Cluster> clusters() const { return clusters_; }
     // Contains all clusters: an aligned box.
     [[nodiscard]] const Cluster& bound() const { return bound_; }
+    // Differs for each call of cut() and deserialise() of the process; copies share it. 0: the mesh is empty.
+    [[nodiscard]] std::uint64_t identity() const { return identity_; }
     // Bytes that this object holds.
     [[nodiscard]] std::size_t memory() const;
 
@@ -89,6 +91,7 @@ class ClusteredMesh {
   private:
     friend class PatchBuilder;
     friend struct StoredMesh;
+    [[nodiscard]] static std::uint64_t next_identity();
     Vector<std::uint32_t> order_;
     Vector<Cluster> clusters_;
     Cluster bound_;
@@ -96,6 +99,7 @@ class ClusteredMesh {
     Vector<Patch> patches_;  // one a cluster
     Vector<float> coordinates_;
     Vector<Block> blocks_;
+    ResetOnMove<std::uint64_t> identity_;
 };
 
 }  // namespace crofton::depth

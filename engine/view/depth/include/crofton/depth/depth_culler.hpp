@@ -53,18 +53,17 @@ class DepthCuller;
 
 // Where an object of a camera's picture lies in a light's shadow map.
 struct DepthReceiver {
-    glm::mat4 to_map{1.0f};  // takes model coordinates to clip coordinates of the map, as the shader does
+    const ClusteredMesh* mesh = nullptr;  // that of the picture; read only if something of the object is seen
+    glm::mat4 to_map{1.0f};               // takes model coordinates to clip coordinates of the map, as the shader does
     // Set it if anything within the mesh's bound may be seen, and not its triangles only.
     bool solid = false;
 };
 
 // What looks a shadow map up: the points of what a camera sees.
-struct ShadowReceivers {
+struct DepthReceivers {
     static constexpr float kMaxRadius = 1024.0f;
 
-    // Has answered find_visible() for the camera's picture. The objects and the meshes of that call must still be
-    // there.
-    const DepthCuller* seen = nullptr;
+    const DepthCuller* seen = nullptr;            // its last answer is that of find_visible() for the camera's picture
     std::span<const DepthReceiver> objects = {};  // one for each object of that call
     // A lookup reads texels whose centres are at most this far from its point along each axis, in texels: 0.5 for the
     // nearest texel, 1 for a bilinear comparison, r + 1 for one in each of (2 r + 1)² texels. Add the texels by which
@@ -104,8 +103,8 @@ struct DepthStatistics {
 // - never give a sample a depth nearer than the triangle's nearest vertex, and write and compare depth as 32-bit
 // floats. docs/notes/depth.md derives the margins.
 //
-// Keeps its memory between calls and allocates only when it must grow. Use one culler per thread; with an executor one
-// call may use several threads.
+// Keeps its memory between calls and allocates only when it must grow. Keeps no pointer to what a call was given. Use
+// one culler per thread; with an executor one call may use several threads.
 class DepthCuller {
   public:
     DepthCuller();
@@ -131,11 +130,13 @@ class DepthCuller {
     // is nearer to the light, as shaders with a bias compare; for renderers as above, without slope-scaled depth bias
     // in the map; and for shaders that look up points of the triangles (docs/depth.md).
     //
-    // Errors: as find_visible(); no culler in `receivers`, or this one; a number of its objects that is not that of the
-    // camera's; a radius out of [0.5, kMaxRadius]; a map with several samples.
+    // Errors: as find_visible(); no culler in `receivers`, or this one, or one whose last answer is not that of
+    // find_visible(); a number of its objects that is not that of the camera's; an object that is seen without a mesh,
+    // or with another than in the camera's picture (item = object; ClusteredMesh::identity()); a radius out of
+    // [0.5, kMaxRadius]; a map with several samples.
     [[nodiscard]] Result<std::span<const VisibleCluster>> find_casters(std::span<const DepthObject> objects,
                                                                        const PictureView& map,
-                                                                       const ShadowReceivers& receivers,
+                                                                       const DepthReceivers& receivers,
                                                                        Executor& executor = serial_executor());
 
     [[nodiscard]] const DepthStatistics& statistics() const;

@@ -43,6 +43,13 @@ struct WholeViewsDeleter {
     void operator()(WholeViews* views) const;
 };
 using WholeViewsOwner = Owner<WholeViews, WholeViewsDeleter>;
+
+// Tells whether an answer is of a World as it is now. Numbers are used once in a process, so another World has others.
+struct Revision {
+    std::uint64_t update = 0;   // of the last update() that changed something
+    std::uint64_t removal = 0;  // of the last object or mesh that was removed or replaced, which counts at once
+    bool operator==(const Revision&) const = default;
+};
 }  // namespace world
 
 struct ObjectRef {
@@ -139,6 +146,7 @@ class ViewResult {
     world::WholeViewOwner whole_;
     ResetOnMove<bool> hides_, with_regions_;
     const world::ObjectNames* names_ = nullptr;
+    world::Revision revision_;          // of the World
     Vector<std::uint64_t> candidates_;  // CullOptions::candidate_mask and what has changed since
 };
 

@@ -212,10 +212,10 @@ class ViewResult;
 
 // What a camera sees, for the view of a light.
 struct ShadowReceivers {
-    // The answer to the camera's view, which had a picture; not the one that the light's answer goes to. The World must
-    // not have changed since.
+    // The answer to the camera's view, which had a picture; not the one that the light's answer goes to. It holds until
+    // an update changes something, an object or a mesh is removed, or a mesh is replaced.
     const ViewResult* seen = nullptr;
-    float radius = 1.0f;  // as depth::ShadowReceivers::radius
+    float radius = 1.0f;  // as depth::DepthReceivers::radius
 };
 
 // Describes a view for World::view.

@@ -207,8 +207,8 @@ class World {
     // camera or matrix that is not valid; a volume of more than 12 planes, or with one that is not finite; limits with
     // a hysteresis below 1, or neither 32 layer distances nor none; occlusion without an eye, or whose least cover is
     // NaN; a depth buffer's size or a picture's out of its range; a picture beside occlusion, or without an eye;
-    // receivers without a picture, without the answer to a view with a picture of this World, with `visible` itself, or
-    // with a radius out of its range.
+    // receivers without a picture, without the answer to a view with a picture of this World, with one from before the
+    // World changed, with `visible` itself, or with a radius out of its range.
     Result<void> view(const ViewRequest& request, ViewResult& visible, Executor& executor = serial_executor()) const;
     // Answers up to 32 views: lists each object once, with a mask of the views that see it.
     //
@@ -220,7 +220,8 @@ class World {
     // hidden_by() lists the occluders that hide an object, none if it is not hidden. drawn_occluders() lists the drawn
     // occluders, those that hide most first. Call them after a view with occlusion and before the next update.
     //
-    // hidden_by() draws all occluders again, and allocates. Errors: invalid_argument if `visible` is of another World.
+    // hidden_by() draws all occluders again, and allocates. Errors: invalid_argument if `visible` is of another World,
+    // or an update has changed something since.
     Result<void> hidden_by(ObjectHandle object, const ViewResult& visible, Vector<OccluderRef>& occluders) const;
     Result<void> drawn_occluders(const ViewResult& visible, Vector<OccluderRef>& occluders) const;
 
