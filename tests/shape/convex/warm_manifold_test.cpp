@@ -26,6 +26,30 @@ double area(const Manifold& m) {
     return 0.5 * glm::length(sum);
 }
 
+// What of a polygon is within the prism over a face along its normal, by cutting it plane by plane.
+std::vector<glm::dvec3> cut_by_prism(std::vector<glm::dvec3> polygon, const std::vector<glm::dvec3>& face,
+                                     const glm::dvec3& normal) {
+    for (std::size_t k = 0; k < face.size(); ++k) {
+        const glm::dvec3 outward = glm::normalize(glm::cross(face[(k + 1) % face.size()] - face[k], normal));
+        std::vector<glm::dvec3> kept;
+        for (std::size_t i = 0; i < polygon.size(); ++i) {
+            const glm::dvec3 &p = polygon[i], &q = polygon[(i + 1) % polygon.size()];
+            const double from = glm::dot(outward, p - face[k]), to = glm::dot(outward, q - face[k]);
+            if (from <= 0.0) kept.push_back(p);
+            if ((from < 0.0 && to > 0.0) || (from > 0.0 && to < 0.0)) kept.push_back(p + from / (from - to) * (q - p));
+        }
+        polygon = kept;
+    }
+    return polygon;
+}
+
+std::vector<glm::dvec3> corners_of_face(const Hull& hull, int face, const RigidTransform& pose) {
+    std::vector<glm::dvec3> corners;
+    for (const std::uint16_t v : hull.face_vertices(face))
+        corners.push_back(pose.rotation * glm::dvec3(hull.vertices()[v]) + pose.translation);
+    return corners;
+}
+
 }  // namespace
 
 TEST_SUITE("convex/warm_manifold") {
@@ -145,6 +169,101 @@ TEST_SUITE("convex/warm_manifold") {
             CHECK((warm.count > 0) == (cold.count > 0));
             CHECK(std::abs(warm.depth - cold.depth) <= 1.5e-4 * size);
         }
+    }
+
+    // A corner, an edge or a face of b comes down on a face of a, in its middle or near its rim. A neighbor of the
+    // corner is about as high as the margin, or the edge to it passes the rim about there.
+    TEST_CASE("warm points are the corners of what both faces have in common within the margin") {
+        RandomShapes random(91);
+        int asked = 0, lone = 0, several = 0, at_rim = 0;
+        for (int i = 0; i < 20000; ++i) {
+            const double size_b = i % 3 == 0 ? 0.1 : 1.0;
+            const HullOptions flat{.face_tolerance = 0.0f};
+            const Hull a = Hull::build(random.points(4 + random.index(12)), flat).value(),
+                       b = Hull::build(random.points(4 + random.index(28), size_b), flat).value();
+            const Shape shape_a = Shape::hull(a), shape_b = Shape::hull(b);
+            const int face = random.index(a.face_count());
+            const RigidTransform pose_a{random.rotation(), 3.0 * random.direction()};
+            const glm::dvec3 normal = glm::normalize(pose_a.rotation * a.face_normal(face));
+            const std::vector<glm::dvec3> rim = corners_of_face(a, face, pose_a);
+            // A vertex of b downwards, or nearly a face.
+            const glm::dvec3 down = i % 2 == 0 ? random.direction()
+                                               : b.face_normal(random.index(b.face_count())) +
+                                                     std::pow(10.0, random.number(-4, 0)) * random.direction();
+            RigidTransform pose_b{pose_a.rotation, {}};
+            const glm::dquat turn(glm::normalize(down), -glm::normalize(a.face_normal(face)));
+            pose_b.rotation = pose_a.rotation * glm::mat3_cast(glm::normalize(turn));
+            const glm::dvec3 low = support_point(shape_b, glm::transpose(pose_b.rotation) * -normal);
+            glm::dvec3 place(0.0);
+            double whole = 0.0;
+            for (const glm::dvec3& corner : rim) {
+                const double weight = std::pow(random.number(0, 1), 4.0);
+                place += weight * corner, whole += weight;
+            }
+            const double depth = random.number(-0.02, 0.02) * size_b;
+            pose_b.translation = place / whole - pose_b.rotation * low - depth * normal;
+            const ShapeAtPose pa{shape_a, pose_a}, pb{shape_b, pose_b};
+            // The margin: as high as a vertex of b, or as where an edge of b passes the rim, or any.
+            const auto height = [&](const glm::dvec3& p) { return glm::dot(normal, p - rim[0]); };
+            std::vector<double> heights{random.number(0.0, 0.5) * size_b};
+            for (const glm::vec3& v : b.vertices())
+                heights.push_back(height(pose_b.rotation * glm::dvec3(v) + pose_b.translation));
+            for (int f = 0; f < b.face_count(); ++f)
+                for (const glm::dvec3& p : cut_by_prism(corners_of_face(b, f, pose_b), rim, normal))
+                    heights.push_back(height(p));
+            const double near = heights[static_cast<std::size_t>(random.index(static_cast<int>(heights.size())))];
+            const double margin = std::max(
+                0.0, near + std::pow(10.0, random.number(-12, -2)) * (random.index(2) == 0 ? -1.0 : 1.0) * size_b);
+            PairCache cache;
+            cache.reference = 1;
+            cache.face = static_cast<std::uint16_t>(face);
+            const ManifoldOptions options{.margin = margin, .max_points = 8};
+            Manifold warm = contact_manifold(pa, pb, options, &cache);
+            if (cache.reference != 1 || cache.face != face || warm.count == 0) continue;
+            if (glm::dot(warm.normal, normal) < 1.0 - 1e-12) continue;
+            // Both faces, as the manifold has them.
+            const glm::dvec3 against = glm::transpose(pose_b.rotation) * -normal;
+            int facing = 0;
+            for (int f = 1; f < b.face_count(); ++f)
+                if (glm::dot(b.face_normal(f), against) > glm::dot(b.face_normal(facing), against)) facing = f;
+            const double pair_size = 4.0 + size_b, near_enough = 1e-9 * pair_size;
+            std::vector<glm::dvec3> wanted;
+            for (const glm::dvec3& p : cut_by_prism(corners_of_face(b, facing, pose_b), rim, normal))
+                wanted.push_back(p);
+            ++asked;
+            // The deepest vertex is there, also where it is not of the face that looks down most.
+            const glm::dvec3 deepest = pose_b.rotation * low + pose_b.translation;
+            wanted.push_back(deepest);
+            const auto is_at = [&](const glm::dvec3& p, const ContactPoint& c) {
+                return glm::distance(p - 0.5 * height(p) * normal, c.position) <= 30.0 * near_enough;
+            };
+            int within = 0;
+            bool is_wrong = false;
+            for (int k = 0; k < warm.count; ++k) {
+                const ContactPoint& c = warm.points[k];
+                bool found = false;
+                for (const glm::dvec3& p : wanted)
+                    found = found || (is_at(p, c) && std::abs(c.depth + height(p)) <= 30.0 * near_enough);
+                is_wrong = is_wrong || !found || c.depth < -margin - 1e-12 * pair_size;
+            }
+            for (std::size_t w = 0; w + 1 < wanted.size(); ++w) {
+                if (height(wanted[w]) > margin - near_enough) continue;
+                ++within;
+                bool found = warm.count == 8;  // of more, eight are kept
+                for (int k = 0; k < warm.count; ++k) found = found || is_at(wanted[w], warm.points[k]);
+                is_wrong = is_wrong || !found;
+            }
+            CHECK_FALSE(is_wrong);
+            lone += warm.count == 1;
+            several += within > 1;
+            for (int k = 0; k < warm.count; ++k) at_rim += warm.points[k].on_a.kind != FeatureKind::face;
+        }
+        MESSAGE(asked << " asked, " << lone << " with one point, " << several << " with several, " << at_rim
+                      << " points at the rim");
+        CHECK(asked > 10000);
+        CHECK(lone > 1000);
+        CHECK(several > 1000);
+        CHECK(at_rim > 1000);
     }
 
     TEST_CASE("warm calls allocate nothing") {

@@ -8,12 +8,8 @@
 namespace crofton::convex {
 namespace {
 
-// A corner of the clipped polygon, with the lines that meet in it: edges of the incident polygon (numbers from 0) or
-// sides of the reference (−1 − number).
-struct ClipCorner {
-    glm::dvec3 point;
-    int before, after;
-};
+// The number of the line at the greatest height that matters, among the sides: none has as high a one.
+constexpr int kTop = kMaxPatch;
 
 // Corners nearer to a side than this share of the size lie on it, so that a polygon as narrow counts as an edge.
 constexpr double kOnSide = 0x1p-44;
@@ -101,34 +97,69 @@ void find_sides(const Patch& polygon, const glm::dvec3& direction, double size, 
     }
 }
 
-void clip(const Patch& reference, const Prism& sides, const Patch& incident, const glm::dvec3& direction,
-          Clipped& clipped) {
+namespace {
+
+void set_whole(const Patch& patch, ClipPolygon& polygon) {
+    polygon.count = patch.count;
+    for (int i = 0; i < patch.count; ++i) polygon.corner[i] = {patch.point[i], i == 0 ? patch.count - 1 : i - 1, i};
+}
+
+}  // namespace
+
+void find_low_part(const Patch& incident, const glm::dvec3& out, double level, double most, ClipPolygon& part) {
+    ClipPolygon whole;
+    set_whole(incident, whole);
+    const auto height = [&](const glm::dvec3& p) { return glm::dot(out, p) - (level + most); };
+    const int kept = clip_side(whole.corner, whole.count, height, kTop, 0.0, part.corner);
+    part.count = kept < 0 ? -1 - kept : kept;
+    if (kept >= 0) std::copy_n(whole.corner, kept, part.corner);
+}
+
+bool is_around(const ClipPolygon& part, const glm::dvec3& point, const glm::dvec3& out, double room) {
+    for (int i = 0; i < part.count; ++i) {
+        const glm::dvec3 way = part.corner[i].point - point;
+        const double along = glm::dot(way, out);
+        if (!(glm::dot(way, way) - along * along < room * room)) return false;
+    }
+    return true;
+}
+
+void clip(const Patch& reference, const Prism& sides, const Patch& incident, ClipPolygon& part,
+          const glm::dvec3& direction, Clipped& clipped) {
     clipped.count = 0;
     const double steepness = glm::dot(reference.normal, direction);
     if (!(steepness > 0.05)) return;
-    ClipCorner buffers[2][kMaxClipped];
-    int count = incident.count, current = 0;
-    for (int i = 0; i < count; ++i) buffers[0][i] = {incident.point[i], i == 0 ? count - 1 : i - 1, i};
+    ClipPolygon other;
+    ClipCorner *now = part.corner, *next = other.corner;
+    int count = part.count;
     for (int side = 0; side < sides.count && count > 0; ++side) {
         // Room for two more each time: a convex polygon crosses a line twice.
         if (count + 2 > kMaxClipped) return;
         const auto height = [&sides, side](const glm::dvec3& p) {
             return glm::dot(sides.outward[side], p) - sides.level[side];
         };
-        const int kept = clip_side(buffers[current], count, height, side, sides.near[side], buffers[1 - current]);
+        const int kept = clip_side(now, count, height, side, sides.near[side], next);
         if (kept >= 0) continue;
         count = -1 - kept;
-        current = 1 - current;
+        std::swap(now, next);
     }
     if (incident.count == 2 && count == 1) return;  // it touches the rim alone: the deepest point names that better
     for (int i = 0; i < count; ++i) {
-        const ClipCorner& corner = buffers[current][i];
+        const ClipCorner& corner = now[i];
+        if (std::min(corner.before, corner.after) == -1 - kTop) continue;
         const double height = glm::dot(reference.normal, corner.point - reference.point[0]) / steepness;
         clipped.point[clipped.count++] = {
             corner.point - height * direction, corner.point,
             reference_feature(reference.self, reference.vertex, reference.edge, reference.count, corner),
             incident_feature(incident, corner, incident.count)};
     }
+}
+
+void clip(const Patch& reference, const Prism& sides, const Patch& incident, const glm::dvec3& direction,
+          Clipped& clipped) {
+    ClipPolygon whole;
+    set_whole(incident, whole);
+    clip(reference, sides, incident, whole, direction, clipped);
 }
 
 BoxFace::BoxFace(const ShapeAtPose& box, int face, const glm::dmat3& to_local, const glm::dvec3& origin, double size)

@@ -25,9 +25,30 @@ struct Prism {
 };
 void find_sides(const Patch& polygon, const glm::dvec3& direction, double size, Prism& sides);
 
+// A polygon while it is clipped: its corners, with the lines that meet in each: edges of the incident patch (numbers
+// from 0) or sides of the reference (−1 − number).
+struct ClipCorner {
+    glm::dvec3 point;
+    int before, after;
+};
+struct ClipPolygon {
+    int count = 0;
+    ClipCorner corner[kMaxClipped];
+};
+
 // The part of the incident patch within the prism over the reference polygon along `direction` (unit, out of the
 // reference), and its shadow on the reference's plane. Nothing where that plane is nearly along the direction.
 void clip(const Patch& reference, const Prism& sides, const Patch& incident, const glm::dvec3& direction,
+          Clipped& clipped);
+
+// The same in two steps, of an incident face of which only what is no higher than `most` along a unit vector matters,
+// from where dot(out, x) = level. A contact needs a small part of a steep face, which few sides cut.
+void find_low_part(const Patch& incident, const glm::dvec3& out, double level, double most, ClipPolygon& part);
+// Whether the shadow of the part is nearer to that of a point than `room`.
+[[nodiscard]] bool is_around(const ClipPolygon& part, const glm::dvec3& point, const glm::dvec3& out, double room);
+// Leaves out the corners at the height of `most`. Without sides nothing is cut off; of the reference's corners the
+// first alone is used then. The part is used up.
+void clip(const Patch& reference, const Prism& sides, const Patch& incident, ClipPolygon& part, const glm::dvec3& out,
           Clipped& clipped);
 
 // The same where the reference is the face of a box: in the frame of the box, where the sides are its half extents.

@@ -138,12 +138,15 @@ Result<Hull> Hull::build(std::span<const glm::vec3> points, const HullOptions& o
         for (const auto& t : result->hull.triangles)
             for (const std::uint32_t v : t) hull.triangles_.push_back(static_cast<std::uint16_t>(v));
         hull.columns_ = side_by_side(result->corners);
+        hull.padded_count_ = static_cast<int>(hull.columns_.size() / 3);
         hull.find_faces(static_cast<double>(options.face_tolerance));
         hull.index_edges();
         hull.find_planes();
         hull.mass_ = mass_of_triangles(result->corners, result->hull.triangles);
         hull.normal_columns_ = side_by_side(hull.normals_);
+        hull.padded_face_count_ = static_cast<int>(hull.normal_columns_.size() / 3);
         hull.describe_faces();
+        hull.find_spokes();
         hull.inner_radius_ = inner_radius_of(*result, hull.mass_.center, hull.radius_);
         return hull;
     });

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <crofton/convex/shape.hpp>
 #include <glm/geometric.hpp>
+#include <numeric>
 
 #include "features.hpp"
 #include "support.hpp"
@@ -132,6 +133,26 @@ void Hull::describe_faces() {
         double along = 0.0;
         const int farthest = farthest_of(column(0), column(1), column(2), padded_count(), face_normal(f), along);
         face_support_.push_back(static_cast<std::uint16_t>(farthest));
+        double low = HUGE_VAL, high = -HUGE_VAL;
+        for (const glm::dvec3& p : points) {
+            low = std::min(low, glm::dot(face_normal(f), p));
+            high = std::max(high, glm::dot(face_normal(f), p));
+        }
+        face_unevenness_.push_back(high - low);
+    }
+}
+
+// Each edge is in two triangles, which have it in opposite directions.
+void Hull::find_spokes() {
+    spoke_first_.assign(vertices_.size() + 1, 0);
+    for (const std::uint16_t v : triangles_) ++spoke_first_[v + 1U];
+    std::partial_sum(spoke_first_.begin(), spoke_first_.end(), spoke_first_.begin());
+    Vector<std::uint16_t> next(spoke_first_.begin(), spoke_first_.end() - 1);
+    spokes_.resize(triangles_.size());
+    for (std::size_t i = 0; i < triangles_.size(); ++i) {
+        const std::uint16_t from = triangles_[i], to = triangles_[i % 3 == 2 ? i - 2 : i + 1];
+        const double length = glm::distance(glm::dvec3(vertices_[from]), glm::dvec3(vertices_[to]));
+        spokes_[next[from]++] = {std::nextafter(static_cast<float>(length), HUGE_VALF), to};
     }
 }
 

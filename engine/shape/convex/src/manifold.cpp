@@ -68,9 +68,21 @@ Manifold finish(const GatheredPoints& points, const Touch& touch, const Manifold
     return manifold;
 }
 
+// The touch's deepest points alone, as Gatherer::add_deepest() has them.
+Manifold at_deepest(const ShapeAtPose& a, const ShapeAtPose& b, const Touch& touch) {
+    Manifold manifold;
+    manifold.normal = touch.normal;
+    manifold.depth = touch.depth;
+    manifold.count = 1;
+    const glm::dvec3 p = touch.on_a + a.shape.radius() * touch.normal, q = touch.on_b - b.shape.radius() * touch.normal;
+    manifold.points[0] = {a.pose.translation + 0.5 * (p + q), touch.depth, touch.feature_a, touch.feature_b, {}, {}};
+    return manifold;
+}
+
 // What the touch's patches have in common, clipped against the face of a (1) or of b (2).
 Manifold gather_clipped(const ShapeAtPose& a, const ShapeAtPose& b, const Pair& pair, const Touch& touch,
                         const Clipped& clipped, const ManifoldOptions& options, PairCache& cache) {
+    if (clipped.count == 0) return at_deepest(a, b, touch);
     GatheredPoints points;
     Gatherer gatherer(gathering_of(a, b, pair.size, options.margin), touch, points);
     gatherer.add(clipped, cache.reference == 1);

@@ -46,11 +46,16 @@ struct Support {
     double along;  // dot(point, direction)
 };
 
+// As farthest_of(), by the widest vectors that there are: for more points than a call costs.
+[[nodiscard]] int farthest_of_many(const double* x, const double* y, const double* z, int count, const glm::dvec3& d,
+                                   double& most);
+
 // The first of the points, given by their coordinates, that is farthest along d. `count` is a multiple of four. NaN
 // directions give 0.
 [[nodiscard]] inline int farthest_of(const double* x, const double* y, const double* z, int count, const glm::dvec3& d,
                                      double& most) {
-    alignas(16) double along[3 * kMaxHullVertices];
+    if (count > 12) return farthest_of_many(x, y, z, count, d, most);
+    alignas(16) double along[12];
     const Lanes2 dx{d.x, d.x}, dy{d.y, d.y}, dz{d.z, d.z};
     const auto value = [&](int i) {
         const Lanes2 v = (dx * load2(x + i) + dy * load2(y + i)) + dz * load2(z + i);
@@ -64,7 +69,7 @@ struct Support {
         high2 = larger(w, high2);
     }
     high = larger(high2, high);
-    most = high[1] > high[0] ? high[1] : high[0];
+    most = (high[1] > high[0] ? high[1] : high[0]) + 0.0;  // 0 has one sign, whichever vectors found it
     for (int i = 0; i < count; ++i)
         if (along[i] == most) return i;
     return 0;

@@ -105,6 +105,49 @@ double unevenness(const Patch& face, const glm::dvec3& direction) {
     return high - low;
 }
 
+// The least distance of a point, given from the shape's origin, to the sides of the prism over a face of a hull or box;
+// negative outside. It is measured in the shape's frame. As poses are rigid to 1e-6, the turned point and the lengths
+// are off by 2e-6 of `size` each, and the prism is tilted by as much.
+double least_distance_to_sides(const ShapeAtPose& placed, int face, const glm::dvec3& point, double size) {
+    const Shape& shape = placed.shape;
+    const glm::dvec3 q = Pair::local(placed.pose.rotation, point);
+    const double off = 1e-5 * size;
+    if (shape.kind() == Kind::box) {
+        const glm::dvec3 within = shape.half_extents() - glm::abs(q);
+        const int k = face / 2;
+        return std::min(within[k == 2 ? 0 : k + 1], within[k == 0 ? 2 : k - 1]) - off;
+    }
+    const Hull& hull = *shape.hull();
+    const glm::dvec3& normal = hull.face_normal(face);
+    const auto loop = hull.face_vertices(face);
+    glm::dvec3 from(hull.vertices()[loop.back()]);
+    double least = std::numeric_limits<double>::infinity();  // squared, with its sign
+    for (const std::uint16_t vertex : loop) {
+        const glm::dvec3 to(hull.vertices()[vertex]), outward = glm::cross(to - from, normal);
+        const double along = glm::dot(outward, to - q);
+        least = std::min(least, along * std::abs(along) / glm::dot(outward, outward));
+        from = to;
+    }
+    return (least < 0.0 ? -std::sqrt(-least) : std::sqrt(least)) - off;
+}
+
+// Whether the part of a hull that is within `reach` of its farthest vertex along `d`, a unit vector of its frame, stays
+// less than `room` beside that vertex, and has no other vertex. All of the hull is in the cone of the edges at the
+// vertex, and of an edge of length l that drops by h along d, the part within reach is l · reach / h long. `error` is
+// what rounding adds to a drop; poses are rigid to 1e-6.
+bool is_lone_vertex(const Hull& hull, int vertex, const glm::dvec3& d, double reach, double room, double error) {
+    const double* const x = hull.column(0);
+    const double* const y = hull.column(1);
+    const double* const z = hull.column(2);
+    const double along = (x[vertex] * d.x + y[vertex] * d.y) + z[vertex] * d.z - error;
+    room *= 0.999;
+    for (const Hull::Spoke& spoke : hull.spokes(vertex)) {
+        const double drop = along - ((x[spoke.to] * d.x + y[spoke.to] * d.y) + z[spoke.to] * d.z);
+        if (!(drop > reach) || !(reach * static_cast<double>(spoke.length) < drop * room)) return false;
+    }
+    return true;
+}
+
 }  // namespace
 
 bool find_touch(const Pair& pair, double margin, PairCache* cache, Touch& touch) {
@@ -135,17 +178,65 @@ bool find_touch(const Pair& pair, double margin, PairCache* cache, Touch& touch)
 
 namespace {
 
-// As Pair::support() along the normal of a hull's face: the face's own farthest vertex is known. That the normal is
-// rounded, and so is what told the vertex, makes `along` off by 28 u of the size at most, below `error`.
-Corner support_of_hull_face(const Pair& pair, bool on_a, int face, const glm::dvec3& d, double& along) {
-    const Shape &shape = on_a ? pair.a : pair.b, &other = on_a ? pair.b : pair.a;
-    const RigidTransform &pose = on_a ? pair.pose_a : pair.pose_b, &other_pose = on_a ? pair.pose_b : pair.pose_a;
-    const int vertex = shape.hull()->face_support(face);
-    const glm::dvec3 point = shape.vertex(vertex), out = on_a ? d : -d;
-    const Support opposite = core_support(other, Pair::local(other_pose.rotation, -out));
-    along = glm::dot(out, pose.rotation * point) + (opposite.along - glm::dot(d, pair.offset));
-    return on_a ? pair.corner(point, opposite.point, vertex, opposite.vertex)
-                : pair.corner(opposite.point, point, opposite.vertex, vertex);
+// The shapes of a pair as a face of one of them sees them: unit `out` is its normal, and `deepest` the other shape's
+// farthest vertex against it.
+struct FaceView {
+    const ShapeAtPose &reference, &incident;
+    bool reference_is_a;
+    glm::dvec3 out;
+    glm::dvec3 inward{0.0};  // −out in the frame of the incident shape
+    Support deepest{};
+    double depth = 0.0;  // of the difference body along `out`
+};
+
+// That of a hull's face is as Pair::support() along its normal: the face's own farthest vertex is known. That the
+// normal is rounded, and so is what told the vertex, makes `depth` off by 28 u of the size at most, below `error`.
+void find_deepest(const Pair& pair, int face, FaceView& view) {
+    const ShapeAtPose& reference = view.reference;
+    view.inward = Pair::local(view.incident.pose.rotation, -view.out);
+    view.deepest = core_support(view.incident.shape, view.inward);
+    double level = 0.0;
+    if (const Hull* hull = reference.shape.hull(); hull != nullptr)
+        level = glm::dot(view.out, reference.pose.rotation * reference.shape.vertex(hull->face_support(face)));
+    else
+        level = core_support(reference.shape, Pair::local(reference.pose.rotation, view.out)).along;
+    const double between = glm::dot(view.out, pair.offset);
+    view.depth = level + (view.deepest.along + (view.reference_is_a ? -between : between));
+}
+
+bool is_face(const Shape& shape, int face) {
+    if (shape.kind() == Kind::box) return face < 6;
+    if (shape.kind() == Kind::hull) return face < shape.hull()->face_count() && !shape.hull()->is_narrow_face(face);
+    return shape.kind() == Kind::triangle && face == 0;
+}
+
+// 0 of a triangle without area.
+glm::dvec3 normal_of_face(const ShapeAtPose& placed, int face, const glm::dvec3& origin, Patch& patch) {
+    if (placed.shape.kind() == Kind::hull)
+        return turned_normal(placed.pose.rotation, placed.shape.hull()->face_normal(face));
+    if (placed.shape.kind() == Kind::box) {
+        glm::dvec3 outward(0.0);
+        outward[face / 2] = (face & 1) != 0 ? 1.0 : -1.0;
+        return turned_normal(placed.pose.rotation, outward);
+    }
+    patch_of_face(placed, face, origin, patch);
+    return patch.normal;
+}
+
+}  // namespace
+
+namespace {
+
+// The touch at the deepest vertex and its shadow on the face.
+void set_at_vertex(const FaceView& view, int face, const glm::dvec3& vertex, Touch& touch) {
+    const Feature at_face{FeatureKind::face, static_cast<std::uint16_t>(face)},
+        at_vertex{FeatureKind::vertex, static_cast<std::uint16_t>(view.deepest.vertex)};
+    const glm::dvec3 shadow = vertex + view.depth * view.out;
+    touch.known = true;
+    touch.feature_a = view.reference_is_a ? at_face : at_vertex;
+    touch.feature_b = view.reference_is_a ? at_vertex : at_face;
+    touch.on_a = view.reference_is_a ? shadow : vertex;
+    touch.on_b = view.reference_is_a ? vertex : shadow;
 }
 
 }  // namespace
@@ -153,57 +244,82 @@ Corner support_of_hull_face(const Pair& pair, bool on_a, int face, const glm::dv
 Warm touch_at_face(const ShapeAtPose& a, const ShapeAtPose& b, const Pair& pair, double margin, const PairCache& cache,
                    double kept_share, Touch& touch, Clipped& clipped) {
     const bool on_a = cache.reference == 1;
-    const ShapeAtPose &reference = on_a ? a : b, &incident = on_a ? b : a;
+    FaceView view{on_a ? a : b, on_a ? b : a, on_a, {}};
+    const ShapeAtPose &reference = view.reference, &incident = view.incident;
     const Shape& shape = reference.shape;
-    const bool valid = shape.kind() == Kind::box
-                           ? cache.face < 6
-                           : (shape.kind() == Kind::hull && cache.face < shape.hull()->face_count()) ||
-                                 (shape.kind() == Kind::triangle && cache.face == 0);
-    if (!valid || (incident.shape.kind() != Kind::box && incident.shape.kind() != Kind::hull)) return Warm::unknown;
+    if (!is_face(shape, cache.face)) return Warm::unknown;
+    if (incident.shape.kind() != Kind::box && incident.shape.kind() != Kind::hull) return Warm::unknown;
     if (!(pair.size < std::numeric_limits<double>::infinity())) return Warm::unknown;
     Patch face, other;
-    const bool on_box = shape.kind() == Kind::box;
-    if (on_box) {
-        glm::dvec3 outward(0.0);
-        outward[cache.face / 2] = (cache.face & 1) != 0 ? 1.0 : -1.0;
-        face.normal = turned_normal(reference.pose.rotation, outward);
-        face.self = {FeatureKind::face, cache.face};
-    } else {
-        patch_of_face(reference, cache.face, a.pose.translation, face);
-    }
-    if (face.normal == glm::dvec3(0.0)) return Warm::unknown;  // a triangle without area
-    const glm::dvec3 out = face.normal;
+    const glm::dvec3 out = view.out = normal_of_face(reference, cache.face, a.pose.translation, face);
+    if (out == glm::dvec3(0.0)) return Warm::unknown;
     touch.normal = on_a ? out : -out;
-    double depth = 0.0;
-    const Corner deepest = shape.hull() != nullptr ? support_of_hull_face(pair, on_a, cache.face, touch.normal, depth)
-                                                   : pair.support(touch.normal, depth);
+    find_deepest(pair, cache.face, view);
+    double depth = view.depth;
     const double rounding = pair.rounding(), kept = kept_share * pair.size;
     if (-depth - pair.error > rounding + margin + pair.doubt()) return Warm::apart;
     // Contacts nearer than rounding tells are decided exactly by the other way.
     if (std::abs(depth) <= 4.0 * pair.error) return Warm::unknown;
-    const int facing = face_along(incident.shape, Pair::local(incident.pose.rotation, -out));
-    corners_of_face(incident, facing, a.pose.translation, other);
+    const glm::dvec3 around = incident.pose.rotation * view.deepest.point,
+                     x = on_a ? around + pair.offset : around;  // from a's origin
+    set_at_vertex(view, cache.face, x, touch);
+    clipped.count = 0;
+    const Hull* const hull = shape.hull();
+    const auto is_least = [&](double drop, double inner) {
+        const double uneven = hull != nullptr             ? 1.00001 * hull->face_unevenness(cache.face) + pair.error
+                              : shape.kind() == Kind::box ? 0.0
+                                                          : unevenness(face, out);
+        return !(depth > 0.0) || least_deep(a, b, pair, touch.normal, {depth - drop - uneven, depth}, inner);
+    };
+    const auto settled = [&] {
+        touch.depth = depth + rounding;
+        if (rounding > 0.0 && std::abs(touch.depth) <= pair.doubt() + pair.error) return Warm::unknown;
+        // Other points than those of the face may be nearer to each other: no proof that the shapes are apart.
+        return touch.depth >= -margin ? Warm::touching : Warm::unknown;
+    };
+    if (incident.shape.hull() != nullptr && shape.kind() != Kind::triangle) {
+        const double reach = std::max(0.0, rounding + margin + depth + pair.error),
+                     room = least_distance_to_sides(reference, cache.face, on_a ? x : x - pair.offset, pair.size);
+        const bool at_vertex = room > 0.0 && is_least(0.0, room);
+        const int vertex = view.deepest.vertex;
+        if (at_vertex && is_lone_vertex(*incident.shape.hull(), vertex, view.inward, reach, room, pair.error))
+            return settled();
+        corners_of_face(incident, face_along(incident.shape, view.inward), a.pose.translation, other);
+        if (at_vertex && hull != nullptr) {
+            ClipPolygon part;
+            find_low_part(other, out, glm::dot(out, x) + depth, rounding + margin + 2.0 * pair.error, part);
+            Prism sides;
+            if (is_around(part, x, out, room)) {
+                face.self = {FeatureKind::face, cache.face};
+                face.point[0] = reference.pose.rotation * shape.vertex(hull->face_vertices(cache.face)[0]) +
+                                (reference.pose.translation - a.pose.translation);
+            } else {
+                corners_of_face(reference, cache.face, a.pose.translation, face);
+                find_sides(face, out, pair.size, sides);
+            }
+            face.normal = out;
+            clip(face, sides, other, part, out, clipped);
+            return settled();
+        }
+    } else {
+        corners_of_face(incident, face_along(incident.shape, view.inward), a.pose.translation, other);
+    }
     // The deepest corner itself above the face, else the common part of the two faces.
-    const glm::dvec3 x = on_a ? deepest.on_b : deepest.on_a;
-    double inner = 0.0, drop = 0.0, uneven = 0.0;
-    if (on_box) {
+    double inner = 0.0, drop = 0.0;
+    if (shape.kind() == Kind::box) {
         const glm::dmat3 to_local = glm::inverse(reference.pose.rotation);
         const BoxFace box(reference, cache.face, to_local, a.pose.translation, pair.size);
         box.clip(other, out, clipped);
         inner = box.distance_within(x);
     } else {
+        if (hull != nullptr) corners_of_face(reference, cache.face, a.pose.translation, face);
+        face.normal = out;
         Prism sides;
         find_sides(face, out, pair.size, sides);
         clip(face, sides, other, out, clipped);
         inner = distance_within(sides, x);
-        uneven = unevenness(face, out);
     }
-    touch.known = true;
-    touch.feature_a = on_a ? face.self : Feature{FeatureKind::vertex, static_cast<std::uint16_t>(deepest.a)};
-    touch.feature_b = on_a ? Feature{FeatureKind::vertex, static_cast<std::uint16_t>(deepest.b)} : face.self;
-    touch.on_a = on_a ? x + depth * touch.normal : x;
-    touch.on_b = on_a ? x : x - depth * touch.normal;
-    if (inner < 0.0 || (depth > 0.0 && !least_deep(a, b, pair, touch.normal, {depth - uneven, depth}, inner))) {
+    if (inner < 0.0 || !is_least(0.0, inner)) {
         double least = std::numeric_limits<double>::infinity();
         for (int i = 0; i < clipped.count; ++i) {
             const ClippedPoint& p = clipped.point[i];
@@ -214,17 +330,11 @@ Warm touch_at_face(const ShapeAtPose& a, const ShapeAtPose& b, const Pair& pair,
                 touch.on_b = on_a ? p.on_incident : p.on_reference;
         }
         if (!(least <= kept)) return Warm::unknown;
-        if (depth > 0.0) {
-            if (clipped.count < 3 || drop > kept) return Warm::unknown;
-            const Depths depths{depth - drop - uneven, depth};
-            if (!least_deep(a, b, pair, touch.normal, depths, inner_distance(clipped, out))) return Warm::unknown;
-        }
+        if (depth > 0.0 && (clipped.count < 3 || drop > kept || !is_least(drop, inner_distance(clipped, out))))
+            return Warm::unknown;
         depth -= std::max(0.0, least);
     }
-    touch.depth = depth + rounding;
-    if (rounding > 0.0 && std::abs(touch.depth) <= pair.doubt() + pair.error) return Warm::unknown;
-    // Other points than those of the face may be nearer to each other: no proof that the shapes are apart.
-    return touch.depth >= -margin ? Warm::touching : Warm::unknown;
+    return settled();
 }
 
 }  // namespace crofton::convex

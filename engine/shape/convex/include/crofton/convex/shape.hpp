@@ -84,10 +84,10 @@ class Hull {
 
     // For the kernels: coordinate k of all vertices, or of all face normals, contiguous; the last one is repeated up to
     // a multiple of four.
-    [[nodiscard]] const double* column(int k) const { return column_of(columns_, k); }
-    [[nodiscard]] int padded_count() const { return static_cast<int>(columns_.size() / 3); }
-    [[nodiscard]] const double* normal_column(int k) const { return column_of(normal_columns_, k); }
-    [[nodiscard]] int padded_face_count() const { return static_cast<int>(normal_columns_.size() / 3); }
+    [[nodiscard]] const double* column(int k) const { return columns_.data() + k * padded_count_; }
+    [[nodiscard]] int padded_count() const { return padded_count_; }
+    [[nodiscard]] const double* normal_column(int k) const { return normal_columns_.data() + k * padded_face_count_; }
+    [[nodiscard]] int padded_face_count() const { return padded_face_count_; }
     // The planes through triangles(): the coordinates of the unit normals, and for k = 3 their offsets dot(normal,
     // corner). Normals are off by plane_error() at most.
     [[nodiscard]] const double* plane_column(int k) const {
@@ -97,6 +97,18 @@ class Hull {
     // The vertex that is farthest along a face's normal, and whether the face is too narrow to tell its sides apart.
     [[nodiscard]] int face_support(int face) const { return face_support_[static_cast<std::size_t>(face)]; }
     [[nodiscard]] bool is_narrow_face(int face) const { return face_is_narrow_[static_cast<std::size_t>(face)] != 0; }
+    // How far the vertices of a face are from one plane across its normal.
+    [[nodiscard]] double face_unevenness(int face) const { return face_unevenness_[static_cast<std::size_t>(face)]; }
+    // The edges of triangles() that lead from a vertex: where to, and how long they are at most.
+    struct Spoke {
+        float length;
+        std::uint16_t to;
+    };
+    [[nodiscard]] std::span<const Spoke> spokes(int vertex) const {
+        const auto first = spoke_first_[static_cast<std::size_t>(vertex)];
+        return {spokes_.data() + first,
+                static_cast<std::size_t>(spoke_first_[static_cast<std::size_t>(vertex) + 1]) - first};
+    }
 
   private:
     [[nodiscard]] std::span<const std::uint16_t> loop(const Vector<std::uint16_t>& entries, int face) const {
@@ -104,20 +116,20 @@ class Hull {
         return {entries.data() + first,
                 static_cast<std::size_t>(face_first_[static_cast<std::size_t>(face) + 1]) - first};
     }
-    [[nodiscard]] static const double* column_of(const Vector<double>& columns, int k) {
-        return columns.data() + columns.size() / 3 * static_cast<std::size_t>(k);
-    }
     void find_faces(double tolerance);
     void index_edges();
     void find_planes();
     void describe_faces();
+    void find_spokes();
 
     Vector<glm::vec3> vertices_;
-    Vector<std::uint16_t> triangles_, face_first_, face_vertices_, face_edges_, face_support_;
+    Vector<std::uint16_t> triangles_, face_first_, face_vertices_, face_edges_, face_support_, spoke_first_;
+    Vector<Spoke> spokes_;
     Vector<std::uint8_t> face_is_narrow_;
     Vector<glm::dvec3> normals_;
     Vector<HullEdge> edges_;
-    Vector<double> columns_, normal_columns_, planes_;
+    Vector<double> columns_, normal_columns_, planes_, face_unevenness_;
+    int padded_count_ = 0, padded_face_count_ = 0;
     MassProperties mass_;
     double max_overshoot_ = 0.0, radius_ = 0.0, inner_radius_ = 0.0, plane_error_ = 0.0;
 };
