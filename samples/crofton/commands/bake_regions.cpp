@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <mutex>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "assets/baked_source.hpp"
@@ -125,12 +126,21 @@ class RegionWriter {
         if (!file) return tl::unexpected(file.error());
         RegionState::Done done{regions_.region(place), bake::checksum(*file)};
         done.file.bytes = file->size();
-        if (auto written = bake::write_file(bake_.folder + "/" + done.file.name, *file); !written) return written;
+        std::string path = bake_.folder + "/" + done.file.name;
+        if (auto written = bake::write_file(path, *file, bake::Flush::later); !written) return written;
         const std::lock_guard lock(mutex_);
+        written_.push_back(std::move(path));
         state_.done.emplace(place, std::move(done));
         return saved_.milliseconds() < kSaveEvery ? Result<void>{} : save();
     }
 
+    // Waits until what write() has written is on the disk.
+    Result<void> flush() {
+        const std::vector<std::string> paths = std::exchange(written_, {});
+        return bake::flush_files(paths);
+    }
+
+    // If the power fails before flush(), the next run finds by its sum that a file is not whole, and bakes it again.
     Result<void> save() {
         saved_ = Stopwatch();
         const auto file = to_file(state_);
@@ -161,6 +171,7 @@ class RegionWriter {
     Executor& executor_;
     std::string path_;
     RegionState state_;
+    std::vector<std::string> written_;  // and not flushed
     std::mutex mutex_;
     Stopwatch saved_;
 };
@@ -216,7 +227,8 @@ Result<int> write_all(const assets::SceneSource& source, const RegionBake& bake,
     });
     finish_what_there_is();
     // Also after an error: what is done need not be done again.
-    auto saved = writer.save();
+    auto saved = writer.flush();
+    if (saved) saved = writer.save();
     if (!written) return tl::unexpected(written.error());
     if (!saved) return tl::unexpected(saved.error());
     if (baked < places.size()) {

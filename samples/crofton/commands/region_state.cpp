@@ -3,10 +3,10 @@
 
 #include <crofton/bake/checksum.hpp>
 #include <crofton/bake/container.hpp>
+#include <crofton/bake/occluder_sections.hpp>
 #include <filesystem>
 
 #include "assets/baked_source.hpp"
-#include "report.hpp"
 
 namespace crofton::cli {
 namespace {
@@ -42,13 +42,8 @@ std::uint64_t region_key(const assets::SceneSource& source, std::uint32_t column
                          const bake::BakeOptions& options, Executor& executor) {
     const scene::Scene& scene = source.scene;
     Sums sums(executor);
-    const std::uint32_t given[] = {CROFTON_VERSION,
-                                   bake::kVersion,
-                                   columns,
-                                   rows,
-                                   static_cast<std::uint32_t>(options.tree),
-                                   options.occluders != nullptr,
-                                   options.clusters};
+    const std::uint32_t given[] = {
+        CROFTON_VERSION, bake::kVersion, columns, rows, static_cast<std::uint32_t>(options.tree), options.clusters};
     sums.add(std::span<const std::uint32_t>(given));
     for (scene::MeshId m = 0; m < scene.mesh_count(); ++m) {
         const TriangleMesh& mesh = scene.mesh(m);
@@ -56,6 +51,7 @@ std::uint64_t region_key(const assets::SceneSource& source, std::uint32_t column
         sums.add(std::span(mesh.colors));
         sums.add(std::span(mesh.indices));
         sums.add(std::span<const char>(scene.mesh_name(m)));
+        sums.add(std::span(&scene.mesh_box(m), 1));
     }
     for (const bake::MeshLook& look : assets::looks_of(source)) {
         const std::uint8_t flags[] = {look.one_sided, look.flat, look.unlit};
@@ -70,6 +66,11 @@ std::uint64_t region_key(const assets::SceneSource& source, std::uint32_t column
         instances.insert(instances.end(), {scene.node_of(i), scene.mesh_of(i)});
     sums.add(std::span<const std::uint32_t>(instances));
     sums.add(scene.layer_masks());
+    if (options.occluders != nullptr) {
+        bake::Writer occluders;  // if it refuses them, so does the bake
+        if (bake::add_occluders(*options.occluders, scene.node_count(), occluders))
+            sums.add(std::span<const std::byte>(occluders.finish()));
+    }
     return sums.sum();
 }
 

@@ -44,28 +44,55 @@ class RegionDrawables final : public Drawables {
     }
     [[nodiscard]] scene::InstanceId first_of(std::uint32_t place) const { return firsts_[place]; }
 
-    // Numbers the meshes of an attached region. Returns whether there were new ones.
-    bool add(std::uint32_t place, const StreamedRegion& region) {
-        if (regions_[place] == &region) return false;
-        regions_[place] = &region;
+    // Takes over which regions are attached. Numbers their meshes, and frees those that no region in memory has any
+    // more, whose numbers later ones get. Returns whether there are new ones.
+    bool follow(std::span<const RegionStream::Attached> attached) {
+        std::vector<const StreamedRegion*> before(regions_.size(), nullptr);
+        before.swap(regions_);
+        for (const RegionStream::Attached& entry : attached) regions_[entry.place] = entry.region;
+        free_unused();
         bool any = false;
-        ids_[place].clear();
-        for (const auto& mesh : region.meshes) {
-            const auto [entry, is_new] = number_.try_emplace(mesh.get(), static_cast<scene::MeshId>(meshes_.size()));
-            if (is_new) meshes_.push_back(mesh);
-            any = any || is_new;
-            ids_[place].push_back(entry->second);
+        for (const RegionStream::Attached& entry : attached) {
+            if (before[entry.place] == entry.region) continue;
+            ids_[entry.place].clear();
+            for (const auto& mesh : entry.region->meshes) {
+                const auto [known, is_new] = number_.try_emplace(mesh.get(), 0);
+                if (is_new) known->second = add(mesh);
+                any = any || is_new;
+                ids_[entry.place].push_back(known->second);
+            }
         }
         return any;
     }
     [[nodiscard]] std::span<const std::shared_ptr<const RegionDrawMesh>> meshes() const { return meshes_; }
 
   private:
+    scene::MeshId add(const std::shared_ptr<const RegionDrawMesh>& mesh) {
+        if (free_.empty()) {
+            free_.push_back(static_cast<scene::MeshId>(meshes_.size()));
+            meshes_.emplace_back();
+        }
+        const scene::MeshId id = free_.back();
+        free_.pop_back();
+        meshes_[id] = mesh;
+        return id;
+    }
+    void free_unused() {
+        for (scene::MeshId id = 0; id < meshes_.size(); ++id) {
+            if (meshes_[id].use_count() != 1) continue;
+            number_.erase(meshes_[id].get());
+            meshes_[id] = none_;
+            free_.push_back(id);
+        }
+    }
+
     const RegionStream& stream_;
-    std::vector<scene::InstanceId> firsts_;                      // by region
-    std::vector<const StreamedRegion*> regions_;                 // by region, as it was when last attached
-    std::vector<std::vector<scene::MeshId>> ids_;                // by region, by its mesh
-    std::vector<std::shared_ptr<const RegionDrawMesh>> meshes_;  // all that ever came
+    std::vector<scene::InstanceId> firsts_;        // by region
+    std::vector<const StreamedRegion*> regions_;   // by region; nullptr: not attached
+    std::vector<std::vector<scene::MeshId>> ids_;  // by region, by its mesh
+    std::vector<std::shared_ptr<const RegionDrawMesh>> meshes_;
+    std::vector<scene::MeshId> free_;  // of `meshes_`, which have `none_`
+    std::shared_ptr<const RegionDrawMesh> none_ = std::make_shared<RegionDrawMesh>();
     std::unordered_map<const RegionDrawMesh*, scene::MeshId> number_;
 };
 
@@ -98,9 +125,7 @@ struct RegionPipeline::State {
     void follow_meshes() {
         in_order.assign(stream.attached().begin(), stream.attached().end());
         std::sort(in_order.begin(), in_order.end(), [](const auto& a, const auto& b) { return a.place < b.place; });
-        bool any = false;
-        for (const RegionStream::Attached& entry : in_order) any = drawables->add(entry.place, *entry.region) || any;
-        if (!any) return;
+        if (!drawables->follow(in_order)) return;
         ++mesh_revision;
         const auto flags = [&](bool bake::MeshLook::*look) {
             std::vector<std::uint8_t> result;
@@ -112,6 +137,7 @@ struct RegionPipeline::State {
         flat = flags(&bake::MeshLook::flat);
         if (!options.picture) return;
         auto cut = std::make_shared<SceneClusters>();
+        all_cut = true;
         for (const auto& mesh : drawables->meshes()) {
             all_cut = all_cut && (!mesh->clusters.clusters().empty() || mesh->mesh.indices.empty());
             cut->meshes.push_back(mesh->clusters);

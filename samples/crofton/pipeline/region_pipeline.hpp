@@ -23,7 +23,8 @@ struct RegionPipelineOptions {
 };
 
 // Instances are numbered through all regions in the order of the index, whether a region is attached or not: as in a
-// file of the whole scene but for their order. Meshes are numbered in the order in which they came.
+// file of the whole scene but for their order. Meshes are numbered in the order in which they came; those
+// that no region in memory has are freed, and later ones get their numbers.
 class RegionPipeline {
   public:
     // Errors: as RegionStream::open; more than 2^32 - 2 objects.
@@ -39,7 +40,7 @@ class RegionPipeline {
 
     // Counts how often new meshes came: a DrawList is then made anew.
     [[nodiscard]] std::uint64_t mesh_revision() const;
-    // The meshes so far, and the instances of attached regions.
+    // The meshes, empty where one was freed, and the instances of attached regions.
     [[nodiscard]] std::shared_ptr<const Drawables> drawables() const;
     // By mesh, as DrawList::Looks.
     [[nodiscard]] std::span<const std::uint8_t> unlit() const;

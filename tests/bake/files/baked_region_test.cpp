@@ -2,14 +2,16 @@
 // Regions of baked scenes, beside a World of the scene's instances.
 #include <doctest/doctest.h>
 #include <algorithm>
-#include <crofton/bake/baked_region.hpp>
+#include <crofton/bake/region_files.hpp>
 #include <crofton/crofton.hpp>
 #include <crofton/occlude/occluder.hpp>
 #include <error_of.hpp>
+#include <filesystem>
 #include <oracle/random_boxes.hpp>
 #include <vector>
 
 #include "../../box_mesh.hpp"
+#include "forge.hpp"
 #include "temporary_file.hpp"
 
 using namespace crofton;
@@ -164,6 +166,44 @@ TEST_SUITE("bake/baked_region") {
         const auto hit = world.raycast({{-100.0, 0.0, 0.0}, {1.0, 0.0, 0.01}});
         REQUIRE(hit);
         CHECK(hit->triangle == kNoTriangle);  // boxes stand for the meshes
+    }
+
+    TEST_CASE(
+        "a region's meshes have the boxes of the file, and a vertex outside of one is an error that names the mesh") {
+        oracle::NearMisses random(8);
+        const Village village(random);
+        const Vector<std::byte> file = village.file();
+        const auto with_crate_of = [&](float half) {
+            return bake_test::with_element<MeshRecord>(file, "meshes", 2, [&](MeshRecord& mesh) {
+                mesh.box = Obb();
+                mesh.box.half_extents = glm::vec3(half);
+            });
+        };
+        const Vector<std::byte> wide = with_crate_of(0.75f), narrow = with_crate_of(0.49f);
+        const auto baked = BakedScene::from_memory(wide);
+        REQUIRE(baked);
+        const Region region = prepare_region(*baked, {.triangles = false}).value();
+        World world({.pairs = false});
+        const RegionHandle attached = world.attach(region, {}).value();
+        std::size_t crates = 0;
+        for (std::uint32_t i = 0; i < region.object_count(); ++i) {
+            if (i == 7 || village.scene.mesh_of(i) != 2) continue;
+            const Obb box = world.box_of(world.object_in(attached, i).value()).value();
+            for (int k = 0; k < 3; ++k) CHECK(box.half_extents[k] == doctest::Approx(0.75).epsilon(1e-5));
+            ++crates;
+        }
+        CHECK(crates > 30);
+        const bake_test::TemporaryFile path(narrow);
+        const std::filesystem::path place(path.path());
+        const auto refused = open_region(place.parent_path().string(), {.name = place.filename().string(),
+                                                                        .origin = {},
+                                                                        .bounds = {glm::dvec3(-70.0), glm::dvec3(70.0)},
+                                                                        .objects = village.scene.instance_count(),
+                                                                        .bytes = narrow.size()});
+        REQUIRE_FALSE(refused);
+        CHECK(error_of(refused).item == 2);
+        CHECK(error_of(refused).message.find(path.path()) != std::string::npos);
+        CHECK(error_of(refused).message.find("does not contain vertex 0") != std::string::npos);
     }
 
     TEST_CASE("a damaged file is an error when it is opened, and too many instances when the region is prepared") {

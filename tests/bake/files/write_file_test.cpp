@@ -315,6 +315,38 @@ TEST_SUITE("bake/write_file") {
         }
     }
 
+    TEST_CASE("files that are flushed later are whole at once, and flushed once each, then their folder") {
+        const Folder folder;
+        const std::vector<std::string> paths{folder.file("first"), folder.file("second")};
+        std::vector<std::string> flushed;
+        int reason = 0;
+        const Disk disk([&](int file) {
+            struct stat status {};
+            REQUIRE(fstat(file, &status) == 0);
+            flushed.push_back(S_ISDIR(status.st_mode) ? "folder" : std::to_string(status.st_size));
+            return S_ISDIR(status.st_mode) ? 0 : reason;
+        });
+        for (const std::string& path : paths) {
+            REQUIRE(write(path, "old"));
+            flushed.clear();
+            REQUIRE(bake::write_file(path, std::as_bytes(std::span(std::string_view(path))), bake::Flush::later));
+            CHECK(contents(path) == path);
+            CHECK(flushed.empty());
+        }
+        CHECK(folder.count() == 2);
+        REQUIRE(bake::flush_files(paths));
+        CHECK(flushed ==
+              std::vector<std::string>{std::to_string(paths[0].size()), std::to_string(paths[1].size()), "folder"});
+        flushed.clear();
+        reason = EIO;
+        const auto failed = bake::flush_files(paths);
+        REQUIRE_FALSE(failed);
+        CHECK(error_of(failed).message.find("first: cannot write: ") != std::string::npos);
+        CHECK(flushed.size() == 3);
+        CHECK(error_of(bake::flush_files(std::vector{folder.file("none")})).message.find("none: cannot open") !=
+              std::string::npos);
+    }
+
     TEST_CASE("a failing disk is an error and the old file stays, and a disk that cannot flush is written to") {
         const Folder folder;
         const std::string path = folder.file("scene");

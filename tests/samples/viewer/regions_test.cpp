@@ -21,6 +21,7 @@ TEST_SUITE("viewer/regions") {
                              eye(6, 5000),
                              shot(7, "east.png"),
                              set(8, {{"panels", true}, {"coloring", "clusters"}, {"bounds", true}, {"cascades", 3}}),
+                             {{"frame", 9}, {"click", {240, 135}}},
                              shot(9, "panels.png")};
         const ViewRun result = view(events, "'" + folder + "'", false);
         check_clean(result);
@@ -47,6 +48,8 @@ TEST_SUITE("viewer/regions") {
         CHECK(panels["settings"]["coloring"] == "regions");
         CHECK(panels["settings"]["bounds"] == false);
         CHECK(panels["messages"].dump().find("over regions") != std::string::npos);
+        CHECK(panels["messages"].dump().find("over regions a click picks no object") != std::string::npos);
+        CHECK_FALSE(panels.contains("selected"));
         // The same script shows the same picture again.
         const Pixels before(scratch().file("east.png"));
         check_clean(view(events, "'" + folder + "'", false));

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Objects with meshes, under nodes and by themselves.
 #include <doctest/doctest.h>
+#include <algorithm>
+#include <box_mesh.hpp>
+#include <cmath>
 #include <error_of.hpp>
 
 #include "cubes.hpp"
@@ -45,6 +48,37 @@ TEST_SUITE("world/meshes") {
         CHECK(world.object_count() == 3);
         CHECK(world.transform_of(good)->translation == glm::dvec3(0.0));
         CHECK(seen(world) == 3);
+    }
+
+    TEST_CASE("a mesh has the box that is known of it, and one that does not contain it is refused by the vertex") {
+        const TriangleMesh cube = testing::box_mesh(glm::vec3(-1.0f), glm::vec3(1.0f));
+        Obb wide, narrow;
+        wide.half_extents = glm::vec3(2.0f, 1.0f, 1.0f);
+        narrow.half_extents = glm::vec3(1.0f, std::nextafter(1.0f, 0.0f), 1.0f);
+        Obb bad = wide;
+        bad.half_extents.x = -1.0f;
+        const auto described = [&](const Obb* box) {
+            return MeshDescription{.positions = cube.positions, .indices = cube.indices, .box = box};
+        };
+        World world;
+        const MeshHandle mesh = world.add_mesh(described(&wide)).value();
+        const ObjectHandle object = world.add({.mesh = mesh}).value();
+        const auto longest = [&] {
+            const glm::vec3 half = world.box_of(object)->half_extents;
+            return std::max({half.x, half.y, half.z});
+        };
+        world.update().value();
+        CHECK(longest() == doctest::Approx(2.0));
+        for (const auto& refused :
+             {world.replace_mesh(mesh, described(&narrow)), world.replace_mesh(mesh, described(&bad))})
+            CHECK(error_of(refused).code == ErrorCode::invalid_argument);
+        CHECK(error_of(world.add_mesh(described(&narrow))).item == 0);
+        CHECK(error_of(world.add_mesh(described(&narrow))).message.find("vertex 0") != std::string::npos);
+        world.update().value();
+        CHECK(longest() == doctest::Approx(2.0));
+        REQUIRE(world.replace_mesh(mesh, described(nullptr)));
+        world.update().value();
+        CHECK(longest() == doctest::Approx(1.0));
     }
 
     TEST_CASE("inputs of either precision and width are read where they are") {

@@ -33,7 +33,7 @@ Vector<std::uint32_t> occluders_of_instances(const BakedScene& scene) {
 class Meshes {
   public:
     Meshes(const BakedScene& scene, const BakedRegionOptions& options)
-        : scene_(scene), options_(options), places_(scene.mesh_count()) {}
+        : scene_(scene), options_(options), places_(scene.mesh_count()), boxes_(scene.mesh_count()) {}
 
     // The place of a mesh with a kind of occluders, or without.
     [[nodiscard]] std::uint32_t place_of(scene::MeshId mesh, std::uint32_t kind) {
@@ -42,9 +42,11 @@ class Meshes {
         const auto place = static_cast<std::uint32_t>(meshes_.size());
         places_[mesh].emplace_back(kind, place);
         const MeshView view = scene_.mesh(mesh);
+        boxes_[mesh] = view.box;
         RegionMesh& added = meshes_.emplace_back();
         added.mesh.positions = view.positions;
         added.mesh.indices = view.indices;
+        added.mesh.box = &boxes_[mesh];
         added.mesh.triangles = options_.triangles;
         added.mesh.precut = scene_.clusters(mesh);
         added.mesh.clusters = added.mesh.precut != nullptr;
@@ -58,6 +60,7 @@ class Meshes {
     const BakedScene& scene_;
     const BakedRegionOptions& options_;
     Vector<Vector<std::pair<std::uint32_t, std::uint32_t>>> places_;  // by mesh: kind, place
+    Vector<Obb> boxes_;                                               // by mesh, of those that are used
     Vector<RegionMesh> meshes_;
 };
 

@@ -240,7 +240,10 @@ Result<Region> open_region(const std::string& folder, const RegionFile& file, co
     if (baked->instances().size() != file.objects)
         return fail(ErrorCode::parse, kNoItem,
                     {path, ": is not the file that the index names: it has ", baked->instances().size(), " instances"});
-    return prepare_region(std::move(*baked), options, executor);
+    auto region = prepare_region(std::move(*baked), options, executor);
+    if (!region && region.error().code != ErrorCode::out_of_memory && region.error().code != ErrorCode::cancelled)
+        return fail(region.error().code, region.error().item, {path, ": ", region.error().message});
+    return region;
 }
 
 }  // namespace crofton::bake

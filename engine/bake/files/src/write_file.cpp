@@ -2,6 +2,7 @@
 #include <crofton/bake/baked_scene.hpp>
 #include <crofton/core/recovery.hpp>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -16,7 +17,6 @@
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
-#include <algorithm>
 #endif
 
 namespace crofton::bake {
@@ -111,6 +111,18 @@ Result<void> open_partial(const std::string& partial, const std::string& path, O
     return fail(ErrorCode::io, kNoItem, {path, ": another program has been writing it for ten seconds"});
 }
 
+// 0, or the reason. Some file systems cannot flush one file (EINVAL); a disk error is reported here and nowhere else.
+int flush_file(int file) {
+    return fsync(file) != 0 && errno != EINVAL && errno != EROFS ? errno : 0;
+}
+
+// Lets the system write the file while the program goes on.
+void begin_to_write([[maybe_unused]] int file) {
+#if defined(SYNC_FILE_RANGE_WRITE)
+    static_cast<void>(sync_file_range(file, 0, 0, SYNC_FILE_RANGE_WRITE));
+#endif
+}
+
 // The name itself is on the disk once its folder is. Where folders cannot be flushed it gets there in its time.
 void flush_folder(const std::string& name) {
     OpenFile folder;
@@ -123,7 +135,8 @@ std::string folder_of(const std::string& target) {
     return slash == std::string::npos ? "." : target.substr(0, slash + 1);
 }
 
-Result<void> write_and_rename(const std::string& target, const std::string& path, std::span<const std::byte> bytes) {
+Result<void> write_and_rename(const std::string& target, const std::string& path, std::span<const std::byte> bytes,
+                              Flush flush) {
     // Memory may end before the file is there, not after.
     const std::string partial = target + ".partial", folder = folder_of(target);
     OpenFile file;
@@ -132,15 +145,23 @@ Result<void> write_and_rename(const std::string& target, const std::string& path
     const bool replaces = ::stat(target.c_str(), &old) == 0;
     int reason = ftruncate(file.number(), 0) != 0 ? errno : write_all(file.number(), bytes);
     if (reason == 0 && replaces) static_cast<void>(fchmod(file.number(), old.st_mode & 07777));
-    // Some file systems cannot flush one file (EINVAL); a disk error is reported here and nowhere else.
-    if (reason == 0 && fsync(file.number()) != 0 && errno != EINVAL && errno != EROFS) reason = errno;
+    if (reason == 0 && flush == Flush::later) begin_to_write(file.number());
+    if (reason == 0 && flush == Flush::now) reason = flush_file(file.number());
     if (reason == 0 && std::rename(partial.c_str(), target.c_str()) != 0) reason = errno;
     if (reason == 0) {
-        flush_folder(folder);
+        if (flush == Flush::now) flush_folder(folder);
         return {};
     }
     std::remove(partial.c_str());
     return write_error(path, "cannot write", reason);
+}
+
+Result<void> flush_one(const std::string& path) {
+    OpenFile file;
+    file.open(path, O_RDONLY | O_NONBLOCK);
+    if (file.number() < 0) return write_error(path, "cannot open", errno);
+    const int reason = flush_file(file.number());
+    return reason == 0 ? Result<void>() : write_error(path, "cannot write", reason);
 }
 
 bool is_special(const std::string& target) {
@@ -150,7 +171,16 @@ bool is_special(const std::string& target) {
 
 #else
 
-Result<void> write_and_rename(const std::string& target, const std::string& path, std::span<const std::byte> bytes) {
+void flush_folder(const std::string&) {}
+std::string folder_of(const std::string&) {
+    return {};
+}
+Result<void> flush_one(const std::string&) {
+    return {};
+}
+
+Result<void> write_and_rename(const std::string& target, const std::string& path, std::span<const std::byte> bytes,
+                              Flush) {
     const std::string partial = target + ".partial";
     std::FILE* file = std::fopen(partial.c_str(), "wb");
     if (!file) return write_error(path, "cannot create", errno);
@@ -170,19 +200,35 @@ bool is_special(const std::string&) {
 }
 
 Result<void> write_directly(const std::string& path, std::span<const std::byte> bytes) {
-    return write_and_rename(path, path, bytes);
+    return write_and_rename(path, path, bytes, Flush::now);
 }
 
 #endif
 
 }  // namespace
 
-Result<void> write_file(const std::string& path, std::span<const std::byte> bytes) {
+Result<void> write_file(const std::string& path, std::span<const std::byte> bytes, Flush flush) {
     if (auto checked = check_path(path); !checked) return checked;
     // Links of /proc lead to pipes that have no path of their own: these are opened by the link.
     return detail::recover([&]() -> Result<void> {
         if (is_special(path)) return write_directly(path, bytes);
-        return write_and_rename(behind_links(path), path, bytes);
+        return write_and_rename(behind_links(path), path, bytes, flush);
+    });
+}
+
+Result<void> flush_files(std::span<const std::string> paths) {
+    return detail::recover([&]() -> Result<void> {
+        Result<void> result;
+        Vector<std::string> folders;
+        for (const std::string& path : paths) {
+            if (auto checked = check_path(path); !checked) return checked;
+            const std::string target = behind_links(path), folder = folder_of(target);
+            auto flushed = is_special(target) ? Result<void>() : flush_one(target);
+            if (!flushed && result) result = std::move(flushed);
+            if (std::find(folders.begin(), folders.end(), folder) == folders.end()) folders.push_back(folder);
+        }
+        for (const std::string& folder : folders) flush_folder(folder);
+        return result;
     });
 }
 

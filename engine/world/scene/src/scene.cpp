@@ -45,11 +45,11 @@ Scene::~Scene() = default;
 Scene::Scene(Scene&&) noexcept = default;
 Scene& Scene::operator=(Scene&&) noexcept = default;
 
-Result<MeshId> Scene::add_mesh(TriangleMesh mesh, std::string_view name) {
+Result<MeshId> Scene::add_mesh(TriangleMesh mesh, std::string_view name, const Obb* box) {
     return detail::recover([&]() -> Result<MeshId> {
         State& s = *state_;
         if (auto room = check_room(s.meshes, s.free_meshes, "meshes"); !room) return tl::unexpected(room.error());
-        auto record = make_record(std::move(mesh), name, s.options.criterion);
+        auto record = make_record(std::move(mesh), name, box, s.options.criterion);
         if (!record) return tl::unexpected(record.error());
         reserve_one(s.meshes);
         const MeshId id = take_id(s.free_meshes, s.meshes.size(), [&] { s.meshes.emplace_back(); });

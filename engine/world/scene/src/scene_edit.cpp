@@ -89,11 +89,11 @@ Result<void> Scene::set_instance_layers(InstanceId instance, std::uint32_t layer
     return {};
 }
 
-Result<void> Scene::replace_mesh(MeshId mesh, TriangleMesh replacement) {
+Result<void> Scene::replace_mesh(MeshId mesh, TriangleMesh replacement, const Obb* box) {
     return detail::recover([&]() -> Result<void> {
         State& s = *state_;
         if (auto known = check_mesh(s.meshes, mesh); !known) return known;
-        auto made = make_record(std::move(replacement), mesh_name(mesh), s.options.criterion);
+        auto made = make_record(std::move(replacement), mesh_name(mesh), box, s.options.criterion);
         if (!made) return tl::unexpected(made.error());
         made->revision = ++s.last_revision;
         made->first_instance = s.meshes[mesh].first_instance;

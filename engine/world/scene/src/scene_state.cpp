@@ -6,12 +6,29 @@
 
 namespace crofton::scene {
 
-Result<MeshRecord> make_record(TriangleMesh mesh, std::string_view name, const measure::Criterion& criterion) {
+namespace {
+
+// The box that the caller knows, or one that is fitted.
+Result<Obb> box_of(const TriangleMesh& mesh, const Obb* known, const measure::Criterion& criterion) {
+    if (known == nullptr)
+        return fit::fit_obb(std::span<const glm::vec3>(mesh.positions), fit::FitOptions{.criterion = criterion});
+    if (auto valid = validate(*known); !valid) return tl::unexpected(valid.error());
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+        if (!contains(*known, glm::dvec3(mesh.positions[i])))
+            return fail(ErrorCode::invalid_argument, i,
+                        {"mesh: its box does not contain vertex ", i, ": pass the box of this mesh, or nullptr"});
+    return *known;
+}
+
+}  // namespace
+
+Result<MeshRecord> make_record(TriangleMesh mesh, std::string_view name, const Obb* known_box,
+                               const measure::Criterion& criterion) {
     if (mesh.indices.empty() || mesh.positions.empty())
         return fail(ErrorCode::empty, kNoItem,
                     {"mesh: it has no triangles", name.empty() ? "" : " (", name, name.empty() ? "" : ")"});
     if (auto valid = validate(mesh); !valid) return tl::unexpected(valid.error());
-    auto box = fit::fit_obb(std::span<const glm::vec3>(mesh.positions), fit::FitOptions{.criterion = criterion});
+    const auto box = box_of(mesh, known_box, criterion);
     if (!box) return tl::unexpected(box.error());
     MeshRecord record;
     record.mesh = std::move(mesh);

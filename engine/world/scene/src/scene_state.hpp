@@ -49,8 +49,9 @@ struct MeshRecord {
     InstanceId first_instance = kNone;
 };
 
-// With the box that fits the mesh best; revision and instances are the caller's to set. Errors: as Scene::add_mesh.
-[[nodiscard]] Result<MeshRecord> make_record(TriangleMesh mesh, std::string_view name,
+// With the known box, or one that fits the mesh; revision and instances are the caller's to set. Errors: as
+// Scene::add_mesh.
+[[nodiscard]] Result<MeshRecord> make_record(TriangleMesh mesh, std::string_view name, const Obb* known_box,
                                              const measure::Criterion& criterion);
 
 // Instances that wait for the kernel, with what it needs of them.

@@ -46,7 +46,7 @@ Result<void> World::State::check(MeshHandle mesh, std::uint64_t item) const {
 
 Result<MeshHandle> World::add_mesh(const MeshDescription& description) {
     State& s = *state_;
-    const auto mesh = s.scene.add_mesh(to_mesh(description));
+    const auto mesh = s.scene.add_mesh(to_mesh(description), {}, description.box);
     if (!mesh) return tl::unexpected(mesh.error());
     if (description.occluders)
         if (auto found = s.set_found_occluders(*mesh, {}); !found) {
@@ -76,7 +76,7 @@ Result<void> World::replace_mesh(MeshHandle mesh, const MeshDescription& descrip
     }
     auto clusters = world::MeshClusters::cut(replacement, description);
     if (!clusters) return tl::unexpected(clusters.error());
-    auto replaced = state_->scene.replace_mesh(mesh.index, std::move(replacement));
+    auto replaced = state_->scene.replace_mesh(mesh.index, std::move(replacement), description.box);
     if (!replaced) return replaced;
     state_->note_removal();
     state_->mesh_clusters.set(mesh.index, std::move(*clusters), state_->scene.mesh_revision(mesh.index));

@@ -60,39 +60,42 @@ Result<void> RegionSolids::add(const RegionObject& object, std::uint32_t item) {
     if (object.shape != nullptr && !object.shape->is_bounded())
         return fail(ErrorCode::unsupported, item,
                     "region: an object's shape is infinite ground: add it to the World itself");
-    const bool has_mesh = object.mesh != kNoIndex;
-    if (has_mesh && object.shape == nullptr && object.bound.kind == BoundKind::none) {
-        if (auto valid = crofton::validate(object.transform, item); !valid) return valid;
-        Added& added = added_.emplace_back();
-        added.item = item;
-        added.only_occludes = object.only_occludes;
-        solids_.push_back(
-            {.transform = object.transform, .has_transform = true, .mesh = object.mesh, .occludes = object.occludes});
-        return {};
-    }
+    const bool has_mesh = object.mesh != kNoIndex, has_transform = has_mesh || object.bound.kind == BoundKind::none;
+    Added& added = added_.emplace_back();
+    added.item = item;
+    added.only_occludes = object.only_occludes;
+    solids_.push_back({.transform = has_transform ? object.transform : Transform(),
+                       .has_transform = has_transform,
+                       .mesh = object.mesh,
+                       .occludes = has_mesh && object.occludes});
+    if (has_mesh && object.shape == nullptr && object.bound.kind == BoundKind::none)
+        return crofton::validate(object.transform, item);
     ObjectDescription description{.bound = object.bound,
                                   .shape = object.shape,
                                   .layers = object.layers,
                                   .occludes = object.occludes,
                                   .only_occludes = object.only_occludes};
     if (has_mesh) description.mesh = meshes_[object.mesh];
-    if (has_mesh || object.bound.kind == BoundKind::none) description.transform = object.transform;
-    const auto added = world_.add(description);
-    if (!added) return tl::unexpected(at_item(added.error(), item));
-    added_.push_back({item, added->index, has_mesh});
-    solids_.emplace_back();
+    if (has_transform) description.transform = object.transform;
+    const auto in_world = world_.add(description);
+    if (!in_world) return tl::unexpected(at_item(in_world.error(), item));
+    added.object = in_world->index;
     return {};
 }
 
-// As Scene::update does: what has no box, or is a point, is in no layer.
-void RegionSolids::place_mesh(const Added& added, RegionData::Solid& solid, Obb& box, std::uint32_t& layers) const {
-    const scene::Scene& scene = world_.state_->scene;
-    const auto placed = scene::transformed_box(solid.transform, scene.mesh_box(meshes_[solid.mesh].index),
-                                               scene::SceneOptions().criterion);
-    box = placed ? *placed : Obb();
-    if (!placed || maps_to_point(solid.transform)) layers = 0;
-    solid.occluding_layers = layers;
-    if (added.only_occludes) layers = 0;
+std::optional<glm::dvec3> RegionSolids::place_object(const Added& added, const RegionData::Solid& solid, Obb& box,
+                                                     std::uint32_t& layers, RegionData::Item& item) const {
+    const World::State& s = *world_.state_;
+    const Object& object = s.table.objects[added.object];
+    box = s.index.box(added.object);
+    item.kind = object.kind;
+    item.radius = object.radius;
+    if (solid.has_transform) {
+        layers = s.scene.layer_masks()[object.instance];
+        return solid.transform.translation;
+    }
+    if (!s.object_shapes.is_grown(added.object)) return std::nullopt;
+    return s.object_shapes.given(added.object).box.center;
 }
 
 Result<void> RegionSolids::place(double max_origin, Vector<Obb>& boxes, Vector<std::uint32_t>& layers,
@@ -101,24 +104,24 @@ Result<void> RegionSolids::place(double max_origin, Vector<Obb>& boxes, Vector<s
     require_ok(s.apply_scene(serial_executor()));
     for (std::size_t i = 0; i < added_.size(); ++i) {
         const Added& added = added_[i];
+        RegionData::Solid& solid = solids_[i];
         Obb& box = boxes[added.item];
-        if (added.object == kNoIndex) {
-            place_mesh(added, solids_[i], box, layers[added.item]);
+        std::uint32_t& mask = layers[added.item];
+        std::optional<glm::dvec3> at = solid.transform.translation;
+        if (added.object != kNoIndex) {
+            at = place_object(added, solid, box, mask, items[added.item]);
+        } else {
+            // As in a Scene, what has no box, or is a point, is in no layer.
+            const auto placed = scene::transformed_box(solid.transform, s.scene.mesh_box(meshes_[solid.mesh].index),
+                                                       scene::SceneOptions().criterion);
+            box = placed ? *placed : Obb();
+            if (!placed || maps_to_point(solid.transform)) mask = 0;
             items[added.item].radius = 0.0;
-            box = region_box(box, solids_[i].transform.translation, max_origin);
-            if (auto valid = validate(box, added.item); !valid) return valid;
-            continue;
         }
-        const Object& object = s.table.objects[added.object];
-        box = s.index.box(added.object);
-        items[added.item].kind = object.kind;
-        items[added.item].radius = object.radius;
-        const bool hangs = object.instance != kNoIndex;
-        if (hangs) layers[added.item] = object.only_occludes ? 0 : s.scene.layer_masks()[object.instance];
-        if (!hangs && !s.object_shapes.is_grown(added.object)) continue;
-        const glm::dvec3 at = hangs ? s.scene.world(s.scene.node_of(object.instance)).translation
-                                    : s.object_shapes.given(added.object).box.center;
-        box = region_box(box, at, max_origin);
+        if (solid.occludes) solid.occluding_layers = mask;
+        if (added.only_occludes) mask = 0;
+        if (!at) continue;
+        box = region_box(box, *at, max_origin);
         if (auto valid = validate(box, added.item); !valid) return valid;
     }
     return {};
@@ -144,22 +147,10 @@ void RegionSolids::finish(RegionData& data, std::size_t item_count, Executor& ex
         const Added& added = added_[i];
         data.solid_of_item[added.item] = static_cast<std::uint32_t>(i);
         RegionData::Solid& solid = data.solids[i];
-        if (added.object == kNoIndex) {
-            if (!solid.occludes || data.meshes[solid.mesh].occluders.empty()) solid.occluding_layers = 0;
-            if (solid.occluding_layers != 0) data.occluding.push_back(added.item);
-            continue;
-        }
+        if (solid.occludes && data.meshes[solid.mesh].occluders.empty()) solid.occluding_layers = 0;
+        if (solid.occluding_layers != 0) data.occluding.push_back(added.item);
+        if (added.object == kNoIndex || !s.object_shapes.has(added.object)) continue;
         const Object& object = s.table.objects[added.object];
-        solid.has_transform = object.instance != kNoIndex;
-        if (solid.has_transform) solid.transform = s.scene.world(s.scene.node_of(object.instance));
-        if (added.has_mesh) {
-            solid.mesh = object.mesh;
-            solid.occludes = object.occludes;
-            if (object.occludes && !data.meshes[solid.mesh].occluders.empty())
-                solid.occluding_layers = s.scene.layer_masks()[object.instance];
-            if (solid.occluding_layers != 0) data.occluding.push_back(added.item);
-        }
-        if (!s.object_shapes.has(added.object)) continue;
         solid.shape = static_cast<std::uint32_t>(data.shapes.size());
         const auto pose = s.object_shapes.pose_of(added.object, object, s.index.box(added.object), s.scene);
         data.shapes.push_back(s.object_shapes.take(added.object));

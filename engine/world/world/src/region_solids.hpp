@@ -3,6 +3,7 @@
 #pragma once
 #include <crofton/core/stop_signal.hpp>
 #include <crofton/world/world.hpp>
+#include <optional>
 
 #include "region_data.hpp"
 
@@ -34,9 +35,11 @@ class RegionSolids {
     struct Added {
         std::uint32_t item = 0;
         std::uint32_t object = kNoIndex;  // in the World; kNoIndex: a mesh alone
-        bool has_mesh = false, only_occludes = false;
+        bool only_occludes = false;
     };
-    void place_mesh(const Added& added, RegionData::Solid& solid, Obb& box, std::uint32_t& layers) const;
+    // Sets what the World's entry of an object holds. Returns what its box is moved with, if it may need a wider one.
+    std::optional<glm::dvec3> place_object(const Added& added, const RegionData::Solid& solid, Obb& box,
+                                           std::uint32_t& layers, RegionData::Item& item) const;
     World world_;
     Vector<MeshHandle> meshes_;
     Vector<std::uint8_t> wants_triangles_;  // by mesh

@@ -21,8 +21,9 @@ struct BakedRegionOptions {
 //
 // The object at place i is instance i, with the user data i, its mesh, its layers and where its node stands; a removed
 // instance is in no layer. A node's occluders hide by its first instance, if all its instances are in the same layers;
-// meshes that were baked with clusters have clusters. Everything is copied: the scene may be destroyed afterwards, and
-// nothing is read from its file later. Errors: as Region::prepare.
+// meshes that were baked with clusters have clusters. Meshes have the boxes of the file. Everything is copied: the
+// scene may be destroyed afterwards, and nothing is read from its file later. Errors: as Region::prepare; a mesh, the
+// item, with a vertex outside its box.
 [[nodiscard]] Result<Region> prepare_region(const BakedScene& scene, const BakedRegionOptions& options = {},
                                             Executor& executor = serial_executor());
 // The same, and takes the scene's tree if it was baked for the region's max_origin (BakeOptions::region_max_origin),

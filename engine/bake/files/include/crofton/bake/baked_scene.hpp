@@ -178,6 +178,14 @@ class BakedScene {
 
 // ---- Write files atomically ----
 
+// When a file is flushed to the disk.
+//
+// - `now`: before it takes its place. Waits for the disk.
+// - `later`: by flush_files(), which you call once for many files. The system begins to write at once. Until then, a
+// power
+//   cut may leave a file empty or cut; what reads .crofton files finds that out by their sums.
+enum class Flush : std::uint8_t { now, later };
+
 // Writes a file atomically: writes `bytes` to PATH.partial, flushes them to the disk, renames that file to PATH, and
 // flushes the folder if the system can. The new file then survives a power cut.
 //
@@ -186,6 +194,10 @@ class BakedScene {
 // inode. Writers of one path wait for each other; the last one wins. A link stays a link, and permissions stay. If PATH
 // is not a regular file (a pipe, /dev/null), it is written to directly. Errors name the path and the system's reason. A
 // zero byte in the path is refused.
-[[nodiscard]] Result<void> write_file(const std::string& path, std::span<const std::byte> bytes);
+[[nodiscard]] Result<void> write_file(const std::string& path, std::span<const std::byte> bytes,
+                                      Flush flush = Flush::now);
+// Flushes files that were written with Flush::later, and their folders. Errors name the path and the system's reason;
+// the other files are flushed all the same.
+[[nodiscard]] Result<void> flush_files(std::span<const std::string> paths);
 
 }  // namespace crofton::bake

@@ -75,7 +75,10 @@ class Scene {
     // Every error below names the item and leaves the scene unchanged. Errors: an id that does not exist or was
     // removed; more than 2^31 items; a transform that fails validate(Transform). A mesh must have triangles and pass
     // validate(TriangleMesh).
-    [[nodiscard]] Result<MeshId> add_mesh(TriangleMesh mesh, std::string_view name = {});
+    //
+    // Fits a box to the mesh, unless you pass the one that it has, as a file may hold it. Error: a vertex, the item,
+    // that your box does not contain (invalid_argument).
+    [[nodiscard]] Result<MeshId> add_mesh(TriangleMesh mesh, std::string_view name = {}, const Obb* box = nullptr);
     // Adds a polygon with its triangles (indices into polygon.points). It is a mesh for all other calls.
     [[nodiscard]] Result<MeshId> add_polygon(PlanarPolygon polygon,
                                              std::span<const std::array<std::uint32_t, 3>> triangles,
@@ -96,7 +99,7 @@ class Scene {
     [[nodiscard]] Result<void> set_instance_layers(InstanceId instance, std::uint32_t layer_mask);
 
     // Both make a polygon an ordinary mesh. replace_mesh: as add_mesh; the name stays.
-    [[nodiscard]] Result<void> replace_mesh(MeshId mesh, TriangleMesh replacement);
+    [[nodiscard]] Result<void> replace_mesh(MeshId mesh, TriangleMesh replacement, const Obb* box = nullptr);
     // For deforming meshes. Takes as many vertices as before, finite and within 1e30. The mesh's box keeps its axes and
     // is refitted, in time linear in the vertices.
     [[nodiscard]] Result<void> set_vertices(MeshId mesh, std::span<const glm::vec3> positions);
