@@ -66,14 +66,13 @@ bool lies_in_decade(const ShapeAtPose& a, const ShapeAtPose& b, bool meet, doubl
 
 void count(std::vector<Library>& libraries, int decade, double offset, int pairs) {
     cli::ConvexPairs random(static_cast<std::uint64_t>(decade) * 1000 + static_cast<std::uint64_t>(offset));
-    std::uint64_t by_axes = 0;
     for (Library& library : libraries) library.wrong_here = 0;
     for (int i = 0; i < pairs;) {
         const double gap = std::pow(10.0, -decade) * random.number(0.1, 1.0) * (random.bits() % 2 == 0 ? 1.0 : -1.0);
         const cli::ConvexPairs::Pair pair = random.next(32, gap, offset);
         if (has_triangle(pair)) continue;
         const ShapeAtPose a = pair.placed_a(), b = pair.placed_b();
-        const bool truth = cli::meet_exactly(a, b, pair.normal, by_axes);
+        const bool truth = cli::meet_exactly(a, b, pair.normal);
         if (!lies_in_decade(a, b, truth, std::pow(10.0, -decade))) continue;
         ++i;
         for (Library& library : libraries) library.wrong_here += answers_wrong(library, a, b, truth);

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "assets/flat_scene.hpp"
-#include "radiosity_peers.hpp"
+#include "lines_peer.hpp"
 
 namespace {
 
@@ -45,7 +45,7 @@ const Scene& scene(std::int64_t which) {
     source->scene.update();
     made.mesh = assets::flat_scene(*source).value().mesh;
     made.ours = std::make_unique<LineTracer>(LineTracer::build(made.mesh).value());
-    if (bench::EmbreeScene::available()) made.theirs = std::make_unique<bench::EmbreeScene>(made.mesh, true);
+    if (bench::EmbreeScene::available()) made.theirs = std::make_unique<bench::EmbreeScene>(made.mesh);
     return made;
 }
 
@@ -90,7 +90,7 @@ BENCHMARK(build_ours)->DenseRange(0, 5)->Unit(benchmark::kMillisecond);
 void build_embree(benchmark::State& state) {
     const Scene& s = scene(state.range(0));
     if (!bench::EmbreeScene::available()) return state.SkipWithError("Embree is not installed");
-    for (auto _ : state) benchmark::DoNotOptimize(std::make_unique<bench::EmbreeScene>(s.mesh, true));
+    for (auto _ : state) benchmark::DoNotOptimize(std::make_unique<bench::EmbreeScene>(s.mesh));
     state.SetLabel(kJobs[state.range(0)].name);
 }
 BENCHMARK(build_embree)->DenseRange(0, 5)->Unit(benchmark::kMillisecond);

@@ -4,9 +4,9 @@
 #include <gmpxx.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <crofton/geometry/box.hpp>
+#include <oracle/box_axes.hpp>
 #include <oracle/tracked.hpp>
 #include <vector>
 
@@ -17,28 +17,6 @@ using Vec3q = Vec3<Rational>;
 template <class V>
 Vec3q rational(const V& v) {
     return vector_of<Rational>(v);
-}
-
-// The separating-axis theorem for the zonotope of the six scaled edges.
-template <class Number = Rational>
-bool boxes_meet_by_axes(const Obb& a, const Obb& b) {
-    std::array<Vec3<Number>, 6> edge;
-    std::array<Number, 6> half;
-    for (int k = 0; k < 6; ++k) {
-        const Obb& box = k < 3 ? a : b;
-        edge[std::size_t(k)] = vector_of<Number>(box.axes[k % 3]);
-        half[std::size_t(k)] = Number(double(box.half_extents[k % 3]));
-    }
-    const Vec3<Number> offset = minus(vector_of<Number>(b.center), vector_of<Number>(a.center));
-    for (std::size_t p = 0; p < 6; ++p)
-        for (std::size_t q = p + 1; q < 6; ++q) {
-            const Vec3<Number> n = cross(edge[p], edge[q]);
-            Number projected_radius = 0.0;
-            for (std::size_t k = 0; k < 6; ++k)
-                if (k != p && k != q) projected_radius += half[k] * abs(dot(edge[k], n));
-            if (sgn(Number(abs(dot(offset, n)) - projected_radius)) > 0) return false;
-        }
-    return true;
 }
 
 // The same in the first kind of number that can tell: a thousand times as fast.

@@ -211,7 +211,7 @@ struct Feasibilities {
 };
 inline Feasibilities feasibilities;
 
-// rows.operator()<Number>(): the inequalities, by that kind of number; Exact is one that never rounds, whose told() is
+// rows.operator()<Number>(): the inequalities, by that kind of number; Exact is one that never rounds, whose sgn() is
 // declared. Nothing if no proof is found.
 template <class Exact, class Rows>
 std::optional<bool> proven_feasible(const Rows& rows_of) {

@@ -154,6 +154,11 @@ int sgn(const Number& a) {
     if (sign == kUnknown) throw Undecided{};
     return sign;
 }
+// Of numbers that never round.
+template <class Number>
+int told(const Number& a) {
+    return sgn(a);
+}
 // a / b within 1e-12 (1 + |a / b|), or Undecided. b is not 0.
 template <class Number>
 requires std::is_same_v<Number, Tracked> || std::is_same_v<Number, TrackedPair>
@@ -162,6 +167,31 @@ double quotient(const Number& a, const Number& b) {
     const double allowed = 1e-13 * (1.0 + std::fabs(result)) * std::fabs(b.value());
     if (a.error() + std::fabs(result) * b.error() <= allowed) return result;
     throw Undecided{};
+}
+
+// How many questions each kind of number has answered.
+struct Decisions {
+    std::uint64_t doubles = 0, pairs = 0, rationals = 0;
+};
+inline Decisions decisions;
+
+// ask.operator()<Number>() in the first kind of number that can tell: doubles, pairs of them, Exact.
+template <class Exact, class Ask>
+auto decide_by(const Ask& ask) {
+    try {
+        const auto answer = ask.template operator()<Tracked>();
+        ++decisions.doubles;
+        return answer;
+    } catch (const Undecided&) {
+    }
+    try {
+        const auto answer = ask.template operator()<TrackedPair>();
+        ++decisions.pairs;
+        return answer;
+    } catch (const Undecided&) {
+    }
+    ++decisions.rationals;
+    return ask.template operator()<Exact>();
 }
 
 template <class Number>

@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "certificate.hpp"
 
-#include <crofton/geometry/dyadic.hpp>
 #include <oracle/frustum_rows.hpp>
 
-namespace crofton {
+#include "exact_numbers.hpp"
 
-// Dyadic is a number that the oracle can decide by: it never rounds.
-static int told(const Dyadic& number) {
-    return number.sign();
-}
-
-namespace cli {
+namespace crofton::cli {
 namespace {
 
 template <class Box>
@@ -30,5 +24,4 @@ Proof prove(const Frustum& frustum, const Aabb& box) {
     return prove_box(frustum, box);
 }
 
-}  // namespace cli
-}  // namespace crofton
+}  // namespace crofton::cli

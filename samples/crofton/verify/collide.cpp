@@ -3,53 +3,19 @@
 #include <cmath>
 #include <crofton/collide/narrow_phase.hpp>
 #include <glm/gtc/quaternion.hpp>
+#include <oracle/box_axes.hpp>
 #include <random>
 
+#include "exact_numbers.hpp"
 #include "topics.hpp"
 
 namespace crofton::cli {
 namespace {
 
-__extension__ typedef __int128 Int128;
 using Engine = std::mt19937_64;
 
-// Boxes on a lattice, so that the separating-axis theorem can be put into integers of 128 bits: axes in steps of 2^-22,
-// extents of 2^-24, offsets of 2^-52. Reaches are then multiples of 2^-90, distances of 2^-96, both below 2^8.
-constexpr int kAxisBits = 22, kExtentBits = 24, kOffsetBits = 52;
-constexpr int kRadiusToDistance = kOffsetBits - kAxisBits - kExtentBits;
-
-double on_lattice(double value, int bits) {
-    return std::ldexp(std::nearbyint(std::ldexp(value, bits)), -bits);
-}
-Int128 integer(double value, int bits) {
-    return static_cast<Int128>(std::ldexp(value, bits));
-}
-Int128 magnitude(Int128 value) {
-    return value < 0 ? -value : value;
-}
-
-bool meet_in_integers(const Obb& a, const Obb& b) {
-    Int128 edge[6][3], half[6], offset[3];
-    for (int k = 0; k < 6; ++k) {
-        const Obb& box = k < 3 ? a : b;
-        half[k] = integer(static_cast<double>(box.half_extents[k % 3]), kExtentBits);
-        for (int i = 0; i < 3; ++i) edge[k][i] = integer(static_cast<double>(box.axes[k % 3][i]), kAxisBits);
-    }
-    for (int i = 0; i < 3; ++i) offset[i] = integer(b.center[i] - a.center[i], kOffsetBits);
-    for (int p = 0; p < 6; ++p)
-        for (int q = p + 1; q < 6; ++q) {
-            Int128 n[3], distance = 0, projected_radius = 0;
-            for (int i = 0; i < 3; ++i) {
-                const int j = (i + 1) % 3, k = (i + 2) % 3;
-                n[i] = edge[p][j] * edge[q][k] - edge[p][k] * edge[q][j];
-                distance += n[i] * offset[i];
-            }
-            for (int g = 0; g < 6; ++g)
-                if (g != p && g != q)
-                    projected_radius += half[g] * magnitude(edge[g][0] * n[0] + edge[g][1] * n[1] + edge[g][2] * n[2]);
-            if (magnitude(distance) > projected_radius << kRadiusToDistance) return false;
-        }
-    return true;
+bool boxes_meet(const Obb& a, const Obb& b) {
+    return oracle::decide_by<Dyadic>([&]<class Number>() { return oracle::boxes_meet_by_axes<Number>(a, b); });
 }
 
 glm::dvec3 random_vector(Engine& random) {
@@ -64,23 +30,20 @@ glm::dquat random_rotation(Engine& random) {
     return glm::normalize(glm::dquat(w, x, y, z));
 }
 
-Obb lattice_box(Engine& random, const glm::dquat& frame) {
+Obb random_box(Engine& random, const glm::dquat& frame) {
     Obb box;
-    const glm::dmat3 rotation = glm::mat3_cast(frame);
-    for (int k = 0; k < 3; ++k)
-        for (int i = 0; i < 3; ++i) box.axes[k][i] = static_cast<float>(on_lattice(rotation[k][i], kAxisBits));
-    for (int k = 0; k < 3; ++k)
-        box.half_extents[k] = static_cast<float>(on_lattice(0.55 + 0.45 * random_vector(random).x, 16));
+    box.axes = glm::mat3(glm::mat3_cast(frame));
+    box.half_extents = glm::vec3(0.55 + 0.45 * random_vector(random));
     return box;
 }
 
-// Where b, starting at a's centre, leaves a along `direction`, by bisection with the integers themselves.
+// Where b, starting at a's centre, leaves a along `direction`, by bisection with the oracle itself.
 double touching_distance(const Obb& a, Obb b, const glm::dvec3& direction) {
     double meeting = 0.0, apart = 8.0;
     for (int step = 0; step < 52; ++step) {
         const double middle = 0.5 * (meeting + apart);
-        for (int i = 0; i < 3; ++i) b.center[i] = on_lattice(middle * direction[i], kOffsetBits);
-        (meet_in_integers(a, b) ? meeting : apart) = middle;
+        b.center = middle * direction;
+        (boxes_meet(a, b) ? meeting : apart) = middle;
     }
     return meeting;
 }
@@ -103,20 +66,17 @@ void add_pair(const Class& kind, std::uint64_t trial, Engine& random, PairsToAsk
     // All decades in turn.
     const double angle = std::pow(10.0, -1.0 - static_cast<double>(trial / 15 % 12));
     const glm::dquat turn = glm::angleAxis(angle, glm::normalize(random_vector(random)));
-    const Obb a = lattice_box(random, frame);
-    Obb b = lattice_box(random, kind.parallel ? turn * frame : random_rotation(random));
+    const Obb a = random_box(random, frame);
+    Obb b = random_box(random, kind.parallel ? turn * frame : random_rotation(random));
     const glm::dvec3 direction =
         trial % 2 ? glm::normalize(random_vector(random)) : glm::dvec3(a.axes[static_cast<int>(trial % 3)]);
     const double gap = std::pow(10.0, -1.0 - static_cast<double>(trial % 15)) * (random() % 2 ? 1.0 : -1.0);
     const double distance = touching_distance(a, b, direction) + gap;
-    for (int i = 0; i < 3; ++i) b.center[i] = on_lattice(distance * direction[i], kOffsetBits);
-    // Floats of this size lie on the lattice, or are small enough to be put there.
-    if (kind.float_centers)
-        for (int i = 0; i < 3; ++i)
-            b.center[i] = on_lattice(static_cast<double>(static_cast<float>(b.center[i])), kOffsetBits);
+    b.center = distance * direction;
+    if (kind.float_centers) b.center = glm::dvec3(glm::vec3(b.center));
     pairs.first.push_back(a);
     pairs.second.push_back(b);
-    pairs.truth.push_back(meet_in_integers(a, b));
+    pairs.truth.push_back(boxes_meet(a, b));
 }
 
 std::uint64_t count_wrong(const PairsToAsk& pairs, bool batch) {
@@ -143,7 +103,7 @@ VerifyRow wrong_answers(const Class& kind, const VerifyOptions& options, bool ba
     }
     return none_row("boxes, " + std::string(kind.name) + (batch ? ", in batches" : ", one by one") +
                         ", gaps of 1e-1 to 1e-15: " + std::to_string(trials) + " answers, none wrong",
-                    "separating axes in 128-bit integers", trials, wrong);
+                    "separating axes in exact numbers", trials, wrong);
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ VerifyRow yes_or_no(Sizes sizes, int decade, double offset, const VerifyOptions&
     const std::uint64_t pairs = std::max<std::uint64_t>(20, options.trials / (sizes == Sizes::one ? 500 : 2000));
     ConvexPairs random(options.seed * 1000 + static_cast<std::uint64_t>(decade) * 10 + (offset > 0.0 ? 1 : 0) +
                        (offset > 1e5 ? 1 : 0) + (sizes == Sizes::one ? 0 : 500));
-    std::uint64_t wrong = 0, meeting = 0, by_axes = 0;
+    std::uint64_t wrong = 0, meeting = 0;
     for (std::uint64_t i = 0; i < pairs; ++i) {
         const double gap = std::pow(10.0, -decade) * random.number(0.1, 1.0) * (i % 2 == 0 ? 1.0 : -1.0);
         const ConvexPairs::Pair pair =
@@ -46,39 +46,36 @@ VerifyRow yes_or_no(Sizes sizes, int decade, double offset, const VerifyOptions&
         const ShapeAtPose a = pair.placed_a(), b = pair.placed_b();
         RigidTransform earlier = pair.pose_b;
         earlier.translation += (sizes == Sizes::one ? 0.01 : 0.01 * pair.b.core_radius()) * random.direction();
-        const bool truth = meet_exactly(a, b, pair.normal, by_axes);
+        const bool truth = meet_exactly(a, b, pair.normal);
         wrong += wrong_answers(a, b, earlier, truth);
         meeting += truth;
     }
     char claim[200];
     std::snprintf(claim, sizeof claim,
                   sizes == Sizes::one
-                      ? "convex shapes at %g m, gaps and overlaps of 1e-%d: %llu pairs, %llu meet, %llu by all "
-                        "axes; none wrong"
-                      : "of sizes 1e-6 to 1e6 at %g m, 1e-%d of the larger: %llu pairs, %llu meet, %llu by all "
-                        "axes; none wrong",
-                  offset, decade, static_cast<unsigned long long>(pairs), static_cast<unsigned long long>(meeting),
-                  static_cast<unsigned long long>(by_axes));
+                      ? "convex shapes at %g m, gaps and overlaps of 1e-%d: %llu pairs, %llu meet; none wrong"
+                      : "of sizes 1e-6 to 1e6 at %g m, 1e-%d of the larger: %llu pairs, %llu meet; none wrong",
+                  offset, decade, static_cast<unsigned long long>(pairs), static_cast<unsigned long long>(meeting));
     return none_row(claim, "planes, common points and separating axes in exact numbers", pairs, wrong);
 }
 
 VerifyRow depths(const VerifyOptions& options) {
     const std::uint64_t pairs = std::max<std::uint64_t>(20, options.trials / 2000);
     ConvexPairs random(options.seed + 77);
-    std::uint64_t wrong = 0, met = 0, by_axes = 0;
+    std::uint64_t wrong = 0, met = 0;
     for (std::uint64_t i = 0; i < pairs; ++i) {
         const double overlap = i % 3 == 0 ? 0.3 : std::pow(10.0, random.number(-12.0, -1.0));
         const ConvexPairs::Pair pair = random.next(6, -overlap, i % 5 == 0 ? 1e5 : 0.0);
         const ShapeAtPose a = pair.placed_a(), b = pair.placed_b();
         const convex::Penetration p = convex::penetration(a, b);
         if (!p.overlapping) {
-            wrong += meet_exactly(a, b, pair.normal, by_axes);
+            wrong += meet_exactly(a, b, pair.normal);
             continue;
         }
         ++met;
         const double size = pair.a.core_radius() + pair.b.core_radius() +
                             glm::length(pair.pose_b.translation - pair.pose_a.translation);
-        wrong += !depth_lies_between(ExactShape(a), ExactShape(b), p.lower, p.upper) || p.upper - p.lower > 1e-9 * size;
+        wrong += !depth_lies_between(a, b, p.lower, p.upper) || p.upper - p.lower > 1e-9 * size;
     }
     return none_row("depths of overlaps of 0.3 and 1e-1 to 1e-12: " + std::to_string(met) +
                         " lie between their bounds, which differ by at most 1e-9 of the size",
@@ -96,7 +93,7 @@ VerifyRow casts_sampled(const VerifyOptions& options) {
     constexpr int kSamples = 10'000;
     const std::uint64_t casts = std::max<std::uint64_t>(4, options.trials / 50'000);
     ConvexPairs random(options.seed + 78);
-    std::uint64_t wrong = 0, hits = 0, by_axes = 0, unresolved = 0, samples = 0;
+    std::uint64_t wrong = 0, hits = 0, unresolved = 0, samples = 0;
     for (std::uint64_t i = 0; i < casts; ++i) {
         const ConvexPairs::Pair pair = start_of(random, 0.0);
         const glm::dvec3 way = random.direction(), axis_a = random.direction(), axis_b = random.direction();
@@ -116,10 +113,9 @@ VerifyRow casts_sampled(const VerifyOptions& options) {
             ++samples;
             const double time = end * (k + 0.5) / kSamples;
             const RigidTransform at_a = convex::moved(pair.pose_a, a, time), at_b = convex::moved(pair.pose_b, b, time);
-            const convex::Distance d = convex::distance({pair.a, at_a}, {pair.b, at_b});
-            const std::array normals{d.normal};
-            met_before = meet_exactly(ExactShape({pair.a, at_a}), ExactShape({pair.b, at_b}), normals, glm::dvec3(0.0),
-                                      {}, by_axes);
+            const ShapeAtPose there_a{pair.a, at_a}, there_b{pair.b, at_b};
+            const glm::dvec3 normal = convex::distance(there_a, there_b).normal;
+            met_before = !is_parted_by(there_a, there_b, normal) && meet_exactly(there_a, there_b, normal);
         }
         const RigidTransform at_a = convex::moved(pair.pose_a, a, end), at_b = convex::moved(pair.pose_b, b, end);
         const bool far = hit && convex::distance({pair.a, at_a}, {pair.b, at_b}).lower > 1e-6;
@@ -136,7 +132,7 @@ VerifyRow casts_sampled(const VerifyOptions& options) {
 VerifyRow casts_bisected(const VerifyOptions& options) {
     const std::uint64_t casts = std::max<std::uint64_t>(20, options.trials / 5000);
     ConvexPairs random(options.seed + 79);
-    std::uint64_t wrong = 0, compared = 0, by_axes = 0;
+    std::uint64_t wrong = 0, compared = 0;
     for (std::uint64_t i = 0; i < casts; ++i) {
         const ConvexPairs::Pair pair = start_of(random, kPairOffsets[i % std::size(kPairOffsets)]);
         const convex::Motion motion{-4.0 * pair.normal + 0.3 * random.direction(), glm::dvec3(0.0), glm::dvec3(0.0)};
@@ -144,7 +140,7 @@ VerifyRow casts_bisected(const VerifyOptions& options) {
         wrong += !impact;
         if (!impact) continue;
         const auto meet_at = [&](double time) {
-            return meet_exactly(pair.placed_a(), pair.placed_b(), pair.normal, by_axes, {motion.velocity, time});
+            return meet_exactly(pair.placed_a(), pair.placed_b(), pair.normal, {motion.velocity, time});
         };
         double early = 0.0, late = -1.0;
         for (int k = 0; k <= 64 && late < 0.0; ++k)

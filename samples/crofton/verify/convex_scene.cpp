@@ -20,7 +20,7 @@ using convex::ShapeAtPose;
 constexpr double kSceneOffsets[] = {0.0, 1e3, 1e7};  // in sizes
 
 struct Tally {
-    std::uint64_t cases = 0, wrong = 0, meeting = 0, by_axes = 0;
+    std::uint64_t cases = 0, wrong = 0, meeting = 0;
 };
 
 VerifyRow row_of(const std::string& claim, const char* source, const Tally& tally) {
@@ -61,7 +61,7 @@ VerifyRow hulls_that_touch(const ShapeData& data, double offset, const VerifyOpt
         const double size = a.core_radius() + b.core_radius();
         const double gap = size * std::pow(10.0, random.number(-12.0, -1.0)) * (tally.cases % 2 == 0 ? 1.0 : -1.0);
         const ConvexPairs::Pair pair = random.touching(a, b, gap, offset * data.size);
-        const bool truth = meet_exactly(pair.placed_a(), pair.placed_b(), pair.normal, tally.by_axes);
+        const bool truth = meet_exactly(pair.placed_a(), pair.placed_b(), pair.normal);
         const bool apart = convex::distance(pair.placed_a(), pair.placed_b()).distance > 0.0;
         const bool deep = convex::penetration(pair.placed_a(), pair.placed_b()).overlapping;
         const bool has_points = convex::contact_manifold(pair.placed_a(), pair.placed_b()).count > 0;
@@ -70,8 +70,7 @@ VerifyRow hulls_that_touch(const ShapeData& data, double offset, const VerifyOpt
         tally.meeting += truth;
     }
     return row_of("these hulls," + at_offset(offset) + std::to_string(pairs) + " pairs with gaps of 1e-1 to 1e-12, " +
-                      std::to_string(tally.meeting) + " meet, " + std::to_string(tally.by_axes) +
-                      " by all axes; none wrong",
+                      std::to_string(tally.meeting) + " meet; none wrong",
                   "planes, common points and separating axes in exact numbers", tally);
 }
 
@@ -94,15 +93,12 @@ class TriangleTruth {
             if (!visit(ShapeAtPose{part, surface_.pose})) return;
         }
     }
-    [[nodiscard]] bool meets(const ShapeAtPose& shape, std::uint64_t& by_axes) const {
+    [[nodiscard]] bool meets(const ShapeAtPose& shape) const {
         bool met = false;
         visit_near(shape, 0.0, [&](const ShapeAtPose& part) {
             const convex::Distance d = convex::distance(part, shape);
-            // Apart by a plane that exact numbers confirm, as nearly all are; else all that is known is tried.
-            const std::array normals{d.normal};
-            const bool parted = d.distance > 0.0 && !meet_exactly(ExactShape(part), ExactShape(shape), normals,
-                                                                  glm::dvec3(0.0), {}, by_axes);
-            met = !parted && meet_exactly(part, shape, d.normal, by_axes);
+            // Nearly all are apart, by the plane that their distance gives.
+            met = !(d.distance > 0.0 && is_parted_by(part, shape, d.normal)) && meet_exactly(part, shape, d.normal);
             return !met;
         });
         return met;
@@ -157,7 +153,7 @@ VerifyRow surface_touched(const ShapeData& data, double offset, const VerifyOpti
             place_probe(data, tally.cases % 2 == 0 ? gap : -gap, offset * data.size, tally.cases % 4 < 2, random);
         const ShapeAtPose surface{whole, pair.pose_a}, probe = pair.placed_b();
         const TriangleTruth triangles(data, surface);
-        const bool truth = triangles.meets(probe, tally.by_axes);
+        const bool truth = triangles.meets(probe);
         const convex::Distance d = convex::distance(surface, probe);
         const bool has_points = convex::contact_manifold(surface, probe).count > 0;
         tally.wrong += (convex::intersects(surface, probe) != truth) + ((d.distance == 0.0) != truth);
@@ -199,7 +195,7 @@ VerifyRow surface_hit(const ShapeData& data, const VerifyOptions& options) {
         const double end = hit ? impact->time : 1.0;
         for (int k = 0; k < kMoments && end > 0.0; ++k, ++tally.cases) {
             const RigidTransform pose = at(end * (k + 0.5) / kMoments);
-            tally.wrong += triangles.meets({pair.b, pose}, tally.by_axes);
+            tally.wrong += triangles.meets({pair.b, pose});
         }
         const RigidTransform last = at(end);
         tally.wrong += hit && triangles.distance({pair.b, last}, 2.0 * tolerance)[0] > tolerance;

@@ -21,7 +21,7 @@ namespace crofton::cli {
 // Occlusion: `trials` rays of each kind at each camera offset from 0 to 1e7, to points of objects and through covered
 // pixels. All counts, no chance.
 [[nodiscard]] std::vector<VerifyRow> verify_occlude(const VerifyOptions& options);
-// Boxes that nearly touch, against exact integers: no wrong answer in any class of gap and angle. Then the rows of
+// Boxes that nearly touch, against exact numbers: no wrong answer in any class of gap and angle. Then the rows of
 // verify_convex.
 [[nodiscard]] std::vector<VerifyRow> verify_collide(const VerifyOptions& options);
 // Polytopes that nearly touch, their depths and casts: no wrong answer, by exact arithmetic.

@@ -228,7 +228,7 @@ TEST_SUITE("collide/obb_obb") {
             if (trial % 5 == 0) b.half_extents = glm::vec3(0.0f, 0.3f, 0.0f);
             const bool truth = oracle::boxes_meet_by_vertices(a, b);
             hits += truth;
-            CHECK(oracle::boxes_meet_by_axes(a, b) == truth);
+            CHECK(oracle::boxes_meet_by_axes<oracle::Rational>(a, b) == truth);
             CHECK(oracle::boxes_meet_by_integers(a, b) == truth);
             CHECK(intersects(a, b) == truth);
         }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The oracle of `crofton verify collide` on triangles, which have no inside.
+// The oracle of `crofton verify collide` and of the tests on triangles, which have no inside.
 #include <doctest/doctest.h>
 #include <crofton/convex/query.hpp>
 #include <verify/exact_shapes.hpp>
@@ -10,9 +10,11 @@ namespace {
 
 const RigidTransform kHere;
 
-cli::ExactShape triangle(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
-    const convex::Shape shape = *convex::Shape::triangle(a, b, c);
-    return cli::ExactShape({shape, kHere});
+convex::Shape triangle(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
+    return *convex::Shape::triangle(a, b, c);
+}
+bool meet(const convex::Shape& a, const convex::Shape& b, const glm::dvec3& point) {
+    return oracle::meet_in<oracle::Tracked>({a, kHere}, {b, kHere}, {}, {point});
 }
 
 }  // namespace
@@ -21,24 +23,19 @@ TEST_SUITE("convex/exact_shapes") {
     TEST_CASE("a point of both triangles' planes is no proof that they meet") {
         const auto low = triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
         const auto beside = triangle({3, 0, -1}, {3, 1, -1}, {3, 0, 1});
-        const glm::dvec3 common[] = {{3, 5, 0}};  // on the line where the planes meet
-        std::uint64_t by_axes = 0;
-        CHECK_FALSE(cli::meet_exactly(low, beside, {}, glm::dvec3(0.0), common, by_axes));
-        CHECK(by_axes == 1);
+        const glm::dvec3 common(3, 5, 0);  // on the line where the planes meet
+        CHECK_FALSE(meet(low, beside, common));
         const auto through = triangle({0.25, 0.25, -1}, {0.25, 0.25, 1}, {3, 0.25, 0});
-        const glm::dvec3 inside[] = {{0.25, 0.25, 0}};
-        CHECK(cli::meet_exactly(low, through, {}, glm::dvec3(0.0), inside, by_axes));
-        CHECK(by_axes == 1);
+        CHECK(meet(low, through, glm::dvec3(0.25, 0.25, 0)));
     }
 
     TEST_CASE("triangles of one plane are parted within it, and meet at a corner") {
         const auto low = triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
-        std::uint64_t by_axes = 0;
         const auto meets = [&](float x, float y) {
             const glm::vec3 corner(x, y, 0);
             const auto other = triangle(corner, corner + glm::vec3(1, 0, 0), corner + glm::vec3(1, 1, 0));
-            const bool there = cli::meet_exactly(low, other, {}, glm::dvec3(0.0), {}, by_axes);
-            CHECK(cli::meet_exactly(other, low, {}, glm::dvec3(0.0), {}, by_axes) == there);
+            const bool there = cli::meet_exactly({low, kHere}, {other, kHere}, glm::dvec3(1, 0, 0));
+            CHECK(cli::meet_exactly({other, kHere}, {low, kHere}, glm::dvec3(1, 0, 0)) == there);
             return there;
         };
         CHECK_FALSE(meets(2, 0));

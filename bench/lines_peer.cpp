@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "radiosity_peers.hpp"
+#include "lines_peer.hpp"
 
 #include <algorithm>
 #include <cstring>
@@ -30,11 +30,11 @@ bool EmbreeScene::available() {
     return true;
 }
 
-EmbreeScene::EmbreeScene(const TriangleMesh& mesh, bool crossings) : data_(std::make_unique<Data>()) {
+EmbreeScene::EmbreeScene(const TriangleMesh& mesh) : data_(std::make_unique<Data>()) {
     data_->scene = rtcNewScene(the_device());
     // High quality cuts triangles in two, which a filter would then count twice.
-    rtcSetSceneBuildQuality(data_->scene, crossings ? RTC_BUILD_QUALITY_MEDIUM : RTC_BUILD_QUALITY_HIGH);
-    if (crossings) rtcSetSceneFlags(data_->scene, RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
+    rtcSetSceneBuildQuality(data_->scene, RTC_BUILD_QUALITY_MEDIUM);
+    rtcSetSceneFlags(data_->scene, RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
     const RTCGeometry geometry = rtcNewGeometry(the_device(), RTC_GEOMETRY_TYPE_TRIANGLE);
     void* positions =
         rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, mesh.positions.size());
@@ -54,42 +54,6 @@ EmbreeScene::EmbreeScene(const TriangleMesh& mesh, bool crossings) : data_(std::
 
 EmbreeScene::~EmbreeScene() {
     rtcReleaseScene(data_->scene);
-}
-
-void EmbreeScene::first_hits(std::span<const lines::FirstHitQuery> rays, std::span<lines::Hit> result) const {
-    for (std::size_t begin = 0; begin < rays.size(); begin += 16) {
-        const std::size_t count = std::min<std::size_t>(16, rays.size() - begin);
-        alignas(64) int valid[16];
-        RTCRayHit16 packet;
-        for (std::size_t i = 0; i < 16; ++i) {
-            valid[i] = i < count ? -1 : 0;
-            const Line& line = rays[begin + std::min(i, count - 1)].line;
-            packet.ray.org_x[i] = static_cast<float>(line.point.x);
-            packet.ray.org_y[i] = static_cast<float>(line.point.y);
-            packet.ray.org_z[i] = static_cast<float>(line.point.z);
-            packet.ray.dir_x[i] = static_cast<float>(line.direction.x);
-            packet.ray.dir_y[i] = static_cast<float>(line.direction.y);
-            packet.ray.dir_z[i] = static_cast<float>(line.direction.z);
-            packet.ray.tnear[i] = data_->start;
-            packet.ray.tfar[i] = 1e30f;
-            packet.ray.time[i] = 0.0f;
-            packet.ray.mask[i] = ~0u;
-            packet.ray.flags[i] = 0;
-            packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
-            packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
-        }
-        RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
-        rtcIntersect16(valid, data_->scene, &context, &packet);
-        for (std::size_t i = 0; i < count; ++i) {
-            lines::Hit& hit = result[begin + i];
-            hit = {};
-            if (packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
-            const glm::vec3 normal(packet.hit.Ng_x[i], packet.hit.Ng_y[i], packet.hit.Ng_z[i]);
-            hit = {packet.ray.tfar[i], packet.hit.primID[i],
-                   glm::dot(normal, glm::vec3(rays[begin + i].line.direction)) < 0.0f};
-        }
-    }
 }
 
 namespace {
@@ -165,9 +129,8 @@ struct EmbreeScene::Data {};
 bool EmbreeScene::available() {
     return false;
 }
-EmbreeScene::EmbreeScene(const TriangleMesh&, bool) {}
+EmbreeScene::EmbreeScene(const TriangleMesh&) {}
 EmbreeScene::~EmbreeScene() = default;
-void EmbreeScene::first_hits(std::span<const lines::FirstHitQuery>, std::span<lines::Hit>) const {}
 void EmbreeScene::all_hits(std::span<const Line>, lines::LineHits&) const {}
 
 }  // namespace crofton::bench
