@@ -23,7 +23,7 @@ echo "$commit" >"$folder/.made/commit"
 
 # The library is compiled once: Debian's packages, the wheel and the tests use the same flags, in build folders at the same place of
 # their sources, and ccache, where it is installed, then has their objects. Rust and C# take the library of Debian's package.
-export TMPDIR=$PWD/build/tmp
+export TMPDIR=$PWD/build/tmp LC_ALL=C.UTF-8  # debhelper's, which ccache looks at
 if command -v ccache >/dev/null; then
     export CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache
     export CCACHE_DIR=${CCACHE_DIR:-$PWD/build/ccache} CCACHE_BASEDIR=$PWD/build CCACHE_NOHASHDIR=1
