@@ -129,7 +129,7 @@ def main():
     if options.csv and not failed:
         with options.csv.open("w", encoding="utf-8", newline="") as file:
             file.write(f"# date: {datetime.date.today()}\n# command: packaging/first_results.py FOLDER --csv {options.csv.name}\n")
-            csv.writer(file, lineterminator="\n").writerows([FIELDS, *rows])
+            csv.writer(file, lineterminator="\n").writerows(row[:-1] for row in [FIELDS, *rows])
     sys.exit(1 if failed else 0)
 
 
