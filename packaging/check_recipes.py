@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Checks packaging/vcpkg and packaging/conan against the build, without vcpkg, Conan or a network.
+"""Checks packaging/vcpkg, packaging/conan and C#'s project against the build, without vcpkg, Conan, .NET or a network.
 
 packaging/check_recipes.py [--configure]
 
@@ -8,6 +8,7 @@ Both are run with stand-ins for the functions that they call. The version must b
 that the build looks for, every option one that the project has and every path one that exists. --configure also runs
 CMake with the port's options, with this system's libraries. Nothing is compiled. Exit status 1 where something is wrong.
 """
+import collections
 import importlib.util
 import json
 import re
@@ -15,6 +16,7 @@ import subprocess
 import sys
 import tempfile
 import types
+import xml.etree.ElementTree
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -176,17 +178,30 @@ def check_conan(version, options):
     recipe.recipe_folder, recipe.export_sources_folder = str(ROOT / "packaging/conan"), "/exported"
     recipe.source_folder = recipe.package_folder = "/nowhere"
     recipe.requires = lambda name, **_: required.append(name.split("/")[0])
-    recipe.cpp_info = types.SimpleNamespace(set_property=lambda *_: None, defines=[], system_libs=[])
+    make_info = lambda: types.SimpleNamespace(set_property=lambda *_: None, defines=[], system_libs=[], requires=[])
+    recipe.cpp_info = make_info()
+    recipe.cpp_info.components = components = collections.defaultdict(make_info)
     for method in ("export_sources", "layout", "requirements", "validate", "generate", "build", "package", "package_info"):
         getattr(recipe, method)()
     expect(set(required) == needed(), f"conanfile.py requires {sorted(required)}, the build {sorted(needed())}")
     for pattern, source in copied:
         expect(source == "/nowhere" or any(Path(source).resolve().glob(pattern)), f"conanfile.py exports {pattern}: there is none")
+    linked = {name.split("::")[0] for part in components.values() for name in part.requires if "::" in name}
+    expect(linked == set(required), f"conanfile.py requires {sorted(required)}, its components link {sorted(linked)}")
+    libraries = {"crofton", "crofton_bake", "crofton_study"}
+    expect({name for part in components.values() for name in part.libs} == libraries, f"conanfile.py's components are not {sorted(libraries)}")
     given = {name for made in Recorder.made for name in made.cache_variables}
     for name in given - options:
         problems.append(f"conanfile.py sets {name}, which the project does not have")
     expect({"CROFTON_SAMPLES", "CROFTON_TESTS", "CROFTON_RENDER"} <= given, "conanfile.py builds more than the library")
     check_exports({pattern.split("/")[0] for pattern, source in copied if source != "/nowhere"})
+
+
+def check_csharp(version):
+    folder = ROOT / "bindings/csharp"
+    project = xml.etree.ElementTree.parse(folder / "Crofton.csproj")
+    expect(project.findtext(".//Version") == version, f"Crofton.csproj says version {project.findtext('.//Version')}, the project {version}")
+    expect(all(any(folder.glob(part.get("Include"))) for part in project.iter("Compile")), "Crofton.csproj names files that are not there")
 
 
 def check_exports(exported):
@@ -202,9 +217,10 @@ def main():
     version, options = project()
     check_vcpkg(version, options, "--configure" in sys.argv[1:])
     check_conan(version, options)
+    check_csharp(version)
     for problem in problems:
         print(f"check_recipes: {problem}", file=sys.stderr)
-    return 1 if problems else print("check_recipes: the vcpkg port and the Conan recipe agree with the build")
+    return 1 if problems else print("check_recipes: the vcpkg port, the Conan recipe and C#'s project agree with the build")
 
 
 if __name__ == "__main__":

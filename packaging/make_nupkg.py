@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: MIT
 """Makes Crofton.VERSION.nupkg: the classes for .NET Standard 2.0 and the native library for Linux on x86-64.
 
-packaging/make_nupkg.py FOLDER     after bindings/csharp/test.sh; the same bytes for the same files
+packaging/make_nupkg.py FOLDER [LIBRARIES]     after bindings/csharp/test.sh; the same bytes for the same files. LIBRARIES: the
+folder of libcrofton.so and libcrofton_bake.so, build/shared/engine
 """
 import pathlib
 import re
@@ -46,13 +47,14 @@ RELATIONS = """<?xml version="1.0" encoding="utf-8"?>
 
 def main():
     out = pathlib.Path(sys.argv[1])
+    libraries = pathlib.Path(sys.argv[2]) if len(sys.argv) > 2 else ROOT / "build/shared/engine"
     version = re.search(r"project\(crofton VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text()).group(1)
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         native = folder / "runtimes/linux-x64/native"
         native.mkdir(parents=True)
         for library in ("libcrofton.so", "libcrofton_bake.so"):
-            shutil.copy((ROOT / "build/shared/engine" / library).resolve(), native / library)
+            shutil.copy((libraries / library).resolve(), native / library)
         glibc = bundle(sorted(native.iterdir()), folder / "licences")
         (folder / "lib/netstandard2.0").mkdir(parents=True)
         shutil.copy(ROOT / "build/csharp/Crofton.dll", folder / "lib/netstandard2.0")

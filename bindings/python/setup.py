@@ -16,7 +16,7 @@ root = here / "source" if (here / "source").is_dir() else here.parents[1]  # of 
 class CMakeBuild(build_ext):
     def build_extension(self, extension):
         target = pathlib.Path(self.get_ext_fullpath(extension.name)).resolve()
-        build = pathlib.Path(self.build_temp).resolve()
+        build = root / "build" / f"wheel-{sys.implementation.cache_tag}"
         options = ["PYTHON=ON", "RENDER=OFF", "SAMPLES=OFF", "TESTS=OFF", "BENCH=OFF", "INSTALL=OFF"]
         subprocess.check_call(
             ["cmake", "-S", str(root), "-B", str(build), "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",

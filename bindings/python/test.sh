@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: MIT
 # Builds the wheel, installs it into an environment of its own, build/python, tests it there and runs the README's
 # program. Says so and does nothing where a tool is missing. PYTHON names the interpreter.
+#   bindings/python/test.sh [FOLDER]     FOLDER: an unpacked source package that the wheel is built of, in place of this checkout
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 source packaging/need_tools.sh
@@ -10,7 +11,7 @@ need_tools python --python "$PYTHON" cmake ninja
 "$PYTHON" -c 'import numpy, pytest, setuptools, wheel, venv, ensurepip' 2>/dev/null ||
     { echo "python: skipped, modules are missing; third_party/install.sh --python installs them"; exit 0; }
 rm -rf build/python bindings/python/dist
-bindings/python/make_wheel.sh
+bindings/python/make_wheel.sh "$@"
 "$PYTHON" -m venv --system-site-packages build/python
 build/python/bin/pip install --quiet --no-index --no-deps bindings/python/dist/*.whl
 # From the environment's folder: the package's sources beside the tests have no compiled module.

@@ -71,12 +71,17 @@ class CroftonConan(ConanFile):
 
     def package_info(self):
         self.cpp_info.set_property("cmake_file_name", "crofton")
-        self.cpp_info.set_property("cmake_target_name", "crofton::crofton")
-        self.cpp_info.set_property("pkg_config_name", "crofton")
-        self.cpp_info.libs = ["crofton"]
+        self.cpp_info.set_property("cmake_target_name", "crofton::all")
+        outside = [f"{name}::{name}" for name in ("glm", "tl-expected", "highway", "qhull")]
+        for name, library, requires in (("crofton", "crofton", outside), ("bake", "crofton_bake", ["crofton"]), ("study", "crofton_study", ["bake"])):
+            component = self.cpp_info.components[name]
+            component.set_property("cmake_target_name", f"crofton::{name}")
+            component.set_property("pkg_config_name", library.replace("_", "-"))
+            component.libs, component.requires = [library], requires
+        library = self.cpp_info.components["crofton"]
         if not self.options.statistics:
-            self.cpp_info.defines.append("CROFTON_NO_STATISTICS=1")
+            library.defines.append("CROFTON_NO_STATISTICS=1")
         if self.settings.os in ("Linux", "FreeBSD"):
-            self.cpp_info.system_libs.extend(["m", "pthread"])
+            library.system_libs.extend(["m", "pthread"])
         if "riscv" in str(self.settings.arch):
-            self.cpp_info.system_libs.append("atomic")
+            library.system_libs.append("atomic")

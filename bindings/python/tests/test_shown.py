@@ -18,11 +18,12 @@ def examples(cube):
     camera = crofton.Camera((0, 0, 5))
     clustered = crofton.ClusteredMesh(*cube)
     handle = world.add(box=box)
+    region = crofton.Region.prepare(crofton.boxes([[90, 0, 0]], 1))
     return [
         box, camera, camera.frustum, crofton.IntrinsicVolumes(1, 2, 3), crofton.Criterion(1), crofton.fit_exact(cube[0]),
         crofton.triangulate([[0, 0], [1, 0], [0, 1]]), crofton.BoxList(crofton.boxes([[0, 0, 0]], 1)), clustered,
         crofton.DepthObject(clustered, np.eye(4)), crofton.DepthCuller(), crofton.Broadphase(), handle,
-        world.add_node(), world.add_mesh(mesh), world.contacts[0].first, world.contacts[0], world,
+        world.add_node(), world.add_mesh(mesh), region, crofton.World().attach(region, (0, 0, 0)), world.contacts[0].first, world.contacts[0], world,
         world.raycast((0, 0, 5), (0, 0, -1)), world.closest(10, sphere=((5, 0, 0), 1)),
         world.cast(crofton.Shape.sphere(1), (0, 0, -9), [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 5]]),
         crofton.OcclusionOptions(), crofton.ViewMatrix(np.eye(4)), crofton.PictureView(), crofton.DrawLimits((0, 0, 0)),
