@@ -72,7 +72,7 @@ def by_rule(root, folder, count, seed, tests):
     """`count` places of a module's sources, as many of each rule. The places are drawn by a hash of their own text, so
     that a change elsewhere moves few draws."""
     module, drawn = folder.split("/")[-1], {}
-    for path in sorted((root / "engine" / folder / "src").rglob("*.cpp")):
+    for path in sorted((root / "engine" / folder / "src").rglob("*.[ch]pp")):
         file = str(path.relative_to(root))
         text = path.read_text()
         seen = {}

@@ -35,7 +35,7 @@ RULES = {
     "base/core": (4, ["core"]), "base/geometry": (8, ["geometry"]), "base/sampling": (4, ["sampling"]),
     "bounds/measure": (5, ["measure"]), "bounds/fit": (12, ["fit"]), "bounds/boxtree": (10, ["boxtree", "cull"]),
     "shape/mesh": (10, ["mesh"]), "shape/convex": (10, ["convex"]), "shape/collide": (14, ["collide"]),
-    "view/cull": (14, ["cull"]), "view/occlude": (10, ["occlude"]), "world/scene": (8, ["scene"]), "world/world": (8, ["world"]),
+    "view/cull": (14, ["cull"]), "view/occlude": (10, ["occlude"]), "view/depth": (20, ["depth"]), "world/scene": (8, ["scene"]), "world/world": (8, ["world"]),
     "c_api": (8, ["capi"]), "bake/triangulate": (12, ["triangulate"]), "bake/lines": (4, ["radiosity"]), "bake/files": (4, ["bake"]),
     "bake/pvs": (10, ["pvs"]), "study/radiosity": (5, ["radiosity"]), "study/study": (6, ["study"]), "render": (5, ["render"]),
 }
