@@ -5,6 +5,7 @@
 #include <crofton/geometry/expansion.hpp>
 #include <crofton/geometry/finite.hpp>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -35,6 +36,7 @@ Cross exact_cross(const glm::dvec3& a, const glm::dvec3& b) {
 
 // As contains_along below, in double; nothing if rounding could change the answer. Each product of axes is exact. A
 // term of a sum is rounded at most six times, by 2^-53 of the sum of magnitudes each: 2^-49 is more than twice as much.
+// The least normal number covers terms that underflow.
 std::optional<bool> filtered_contains_along(const Obb& box, const glm::dvec3& point, int k) {
     const glm::dvec3 u(box.axes[(k + 1) % 3]), v(box.axes[(k + 2) % 3]), axis(box.axes[k]), d = point - box.center;
     double distance = 0.0, radius = 0.0, distance_size = 0.0, radius_size = 0.0;
@@ -47,7 +49,7 @@ std::optional<bool> filtered_contains_along(const Obb& box, const glm::dvec3& po
         radius_size += std::abs(axis[i]) * size;
     }
     const double h = half_extent(box, k), beyond = std::abs(distance) - std::abs(radius * h);
-    const double rounding = 0x1p-49 * (distance_size + radius_size * h);
+    const double rounding = 0x1p-49 * (distance_size + radius_size * h) + std::numeric_limits<double>::min();
     if (beyond < -rounding) return true;
     if (beyond > rounding) return false;
     return std::nullopt;

@@ -180,10 +180,8 @@ class BakedScene {
 
 // When a file is flushed to the disk.
 //
-// - `now`: before it takes its place. Waits for the disk.
-// - `later`: by flush_files(), which you call once for many files. The system begins to write at once. Until then, a
-// power
-//   cut may leave a file empty or cut; what reads .crofton files finds that out by their sums.
+// now: before it takes its place, which waits for the disk. later: by flush_files(), which you call once for many
+// files. Until then a power cut may leave a file empty or cut; whoever reads .crofton files finds out by their sums.
 enum class Flush : std::uint8_t { now, later };
 
 // Writes a file atomically: writes `bytes` to PATH.partial, flushes them to the disk, renames that file to PATH, and
