@@ -136,9 +136,6 @@ class IndicesView {
 struct MeshDescription {
     PointsView positions = {};
     IndicesView indices = {};
-    // The mesh's box, if you have it from Scene::mesh_box or BakedScene::mesh, or nullptr to fit one, which takes most
-    // of the time. Error: it does not contain a vertex.
-    const Obb* box = nullptr;
     // True: rays and contacts test the triangles. False: they test the mesh's box, which saves memory and time.
     bool triangles = true;
     // True: calls World::find_occluders with default options. The occluders hide other objects, so set it for opaque
@@ -152,6 +149,9 @@ struct MeshDescription {
     // With clusters: set it if the renderer drops back faces; they are then not listed. Mirrored objects list both
     // sides.
     bool one_sided = false;
+    // The mesh's box, if you have it from Scene::mesh_box or BakedScene::mesh, or nullptr to fit one, which takes most
+    // of the time. Error: it does not contain a vertex.
+    const Obb* box = nullptr;
 };
 
 struct NodeDescription {
