@@ -398,6 +398,67 @@ TEST_SUITE("convex/box_pair") {
         CHECK(deep > 13000);
     }
 
+    // Upright along any coordinate, by any of their edges, either way up; the other edges are skewed as far as poses
+    // may be. They touch at a side, a corner, above each other or at an edge, within some ulps or 1e-16 to 1e-3.
+    TEST_CASE("crates that stand upright meet iff rationals say so, and are as deep") {
+        RandomShapes random(44);
+        int meeting = 0, apart = 0;
+        const auto stand = [&](int k) {
+            const double angle = random.number(0, 6.2), c = std::cos(angle), s = std::sin(angle),
+                         up = random.index(2) == 0 ? 1.0 : -1.0, bend = random.index(2) == 0 ? 3e-7 : 0.0;
+            const int upright = random.index(3);
+            glm::dmat3 r(0.0);
+            r[upright][k] = up;
+            r[(upright + 1) % 3][(k + 1) % 3] = c + bend * random.number(-1, 1);
+            r[(upright + 1) % 3][(k + 2) % 3] = s + bend * random.number(-1, 1);
+            r[(upright + 2) % 3][(k + 1) % 3] = -up * s + bend * random.number(-1, 1);
+            r[(upright + 2) % 3][(k + 2) % 3] = up * c + bend * random.number(-1, 1);
+            return r;
+        };
+        for (int i = 0; i < 6000; ++i) {
+            CAPTURE(i);
+            const int k = random.index(3);
+            const double scale = i % 8 == 0 ? std::pow(10.0, random.number(-3, 3)) : 1.0;
+            const Shape a = random.box(), b = random.box(scale);
+            RigidTransform pose_a{stand(k), {}}, pose_b{stand(k), {}};
+            if (i % 2 == 0) pose_a.translation = 10.0 * random.direction();
+            pose_b.translation = pose_a.translation + 0.5 * random.number(0, 1) * random.direction();
+            // Out along one or two of the directions that can part them.
+            for (int times = 1 + random.index(2); times > 0; --times) {
+                const int way = random.index(3);
+                glm::dvec3 n(0.0);
+                if (way == 0) n[k] = 1.0;
+                if (way == 1) n = glm::normalize(pose_a.rotation[random.index(3)]);
+                if (way == 2) n = glm::normalize(pose_b.rotation[random.index(3)]);
+                pose_b.translation += overlap_along({a, pose_a}, {b, pose_b}, n) * n;
+            }
+            const double size =
+                a.core_radius() + b.core_radius() + glm::length(pose_b.translation - pose_a.translation);
+            if (random.index(2) == 0)
+                pose_b.translation += std::pow(10.0, random.number(-16, -3)) * size * random.direction();
+            const ShapeAtPose first{a, pose_a}, second{b, pose_b};
+            REQUIRE(validate_pose(pose_a));
+            const double exact = exact_depth(first, second);
+            const bool meet = exact >= 0.0;
+            CHECK(intersects(first, second) == meet);
+            CHECK(intersects(second, first) == meet);
+            for (const bool swapped : {false, true}) {
+                const ShapeAtPose &low = swapped ? second : first, &top = swapped ? first : second;
+                const Manifold m = contact_manifold(low, top);
+                CHECK((m.count > 0) == meet);
+                if (meet) CHECK(std::abs(m.depth - exact) <= 1e-9 * size);
+                if (meet) CHECK(std::abs(overlap_along(low, top, m.normal) - exact) <= 2e-9 * size);
+            }
+            const Penetration p = penetration(first, second);
+            CHECK(p.overlapping == meet);
+            if (meet) CHECK(p.lower <= exact * (1.0 + 1e-14));
+            if (meet) CHECK(exact <= p.upper * (1.0 + 1e-14));
+            ++(meet ? meeting : apart);
+        }
+        CHECK(meeting > 1500);
+        CHECK(apart > 1500);
+    }
+
     TEST_CASE("the depth of two boxes lies between its bounds as rationals have it") {
         RandomShapes random(48);
         int deep = 0;

@@ -36,6 +36,19 @@ bool is_world_frame(const glm::dmat3& rotation) {
 
 }  // namespace
 
+int upright_edge(const glm::dmat3& edges, int k) {
+    int upright = -1;
+    for (int i = 0; i < 3; ++i) {
+        const double along = coordinate(edges[i], k);
+        if (along == 0.0) continue;
+        const bool is_axis =
+            std::abs(along) == 1.0 && coordinate(edges[i], kNext[k]) == 0.0 && coordinate(edges[i], kLast[k]) == 0.0;
+        if (upright >= 0 || !is_axis) return -1;
+        upright = i;
+    }
+    return upright;
+}
+
 BoxPair::BoxPair(const Pair& pair)
     : pair_(pair),
       half_a_(pair.a.half_extents()),
@@ -49,11 +62,19 @@ BoxPair::BoxPair(const Pair& pair)
         at_ = pair.offset;
         return;
     }
+    if (!common_frame_) find_upright();
     const glm::dmat3& r = pair.pose_a.rotation;
     const glm::dvec3 x = glm::cross(r[1], r[2]), y = glm::cross(r[2], r[0]), z = glm::cross(r[0], r[1]);
     const double share = 1.0 / glm::dot(r[0], x);
     to_a_[0] = share * x, to_a_[1] = share * y, to_a_[2] = share * z;
     for (int k = 0; k < 3; ++k) at_[k] = glm::dot(to_a_[k], pair.offset);
+}
+
+void BoxPair::find_upright() {
+    for (int k = 0; k < 3; ++k) {
+        const int i = upright_edge(pair_.pose_a.rotation, k), j = i < 0 ? i : upright_edge(pair_.pose_b.rotation, k);
+        if (j >= 0) upright_ = {k, i, j};
+    }
 }
 
 void BoxPair::find_products() {
@@ -178,9 +199,31 @@ BoxAxis BoxPair::least_in_common_frame(double far) {
     return least;
 }
 
+BoxAxis BoxPair::least_of_upright(double far) {
+    BoxAxis least;
+    const auto try_face = [&](int number, double extent) {
+        near_ |= (extent > error_ ? 0 : 1) << number;
+        if (number == 0 || extent < far || extent < least.extent - depth_margin_) least = {number, extent};
+        return extent < far;
+    };
+    for (int k = 0; k < 3; ++k) {
+        find_edges(k);
+        if (try_face(k, face_of_a(k))) return least;
+    }
+    find_products();
+    for (int j = 0; j < 3; ++j)
+        if (j != upright_.j && try_face(3 + j, face_of_b(j))) return least;
+    const double turn = coordinate(pair_.pose_a.rotation[upright_.i], upright_.k) *
+                        coordinate(pair_.pose_b.rotation[upright_.j], upright_.k);
+    radius_sum_[1][upright_.j] = radius_sum_[0][upright_.i];
+    along_[1][upright_.j] = turn * along_[0][upright_.i];
+    return least;
+}
+
 BoxAxis BoxPair::least(double far) {
     if (straight_) return least_of_straight(far);
     if (common_frame_) return least_in_common_frame(far);
+    if (upright_.k >= 0) return least_of_upright(far);
     BoxAxis least;
     if (try_faces(far, least)) try_edges(least);
     return least;
