@@ -5,7 +5,6 @@
 #include <crofton/sampling/sampling.hpp>
 #include <cstdio>
 #include <glm/geometric.hpp>
-#include <glm/matrix.hpp>
 
 #include "occlude_setups.hpp"
 #include "topics.hpp"
@@ -21,39 +20,6 @@ struct OccludeCounts {
     std::uint64_t rays = 0, free = 0, hidden = 0, culled = 0, covered_rays = 0, passed = 0;
 };
 
-// The points from + t · along, t ≥ t_near; the question is about t = 1.
-struct WitnessRay {
-    glm::dvec3 from, along;
-    double t_near;
-};
-
-// False only if the ray certainly meets no front of the box between the near plane and t = 1: its slabs, in double,
-// with room for their rounding. A ray that cannot be decided is no witness.
-bool may_block(const WitnessRay& ray, const Obb& box) {
-    const glm::dvec3 from = ray.from - box.center;
-    const glm::dvec3 axes[3] = {glm::dvec3(box.axes[0]), glm::dvec3(box.axes[1]), glm::dvec3(box.axes[2])};
-    const double volume = glm::dot(axes[0], glm::cross(axes[1], axes[2]));
-    const double size = glm::length(from) + glm::length(ray.along);
-    double enter = -1e300, leave = 1e300, error = 0.0;
-    for (int k = 0; k < 3; ++k) {
-        const glm::dvec3 normal = glm::cross(axes[(k + 1) % 3], axes[(k + 2) % 3]) / volume;
-        const double at = glm::dot(normal, from), slope = glm::dot(normal, ray.along);
-        const auto half = static_cast<double>(box.half_extents[k]);
-        const double rounding = 1e-14 * (size + half);
-        // Along this slab the ray is in it, or beside it, for all of 0 ≤ t ≤ 1; or that is unknown.
-        if (std::fabs(slope) <= 1e3 * rounding) {
-            if (std::fabs(at) - std::fabs(slope) > half + rounding) return false;
-            if (std::fabs(at) + std::fabs(slope) < half - rounding) continue;
-            return true;
-        }
-        const double a = (-half - at) / slope, b = (half - at) / slope;
-        enter = std::max(enter, std::min(a, b));
-        leave = std::min(leave, std::max(a, b));
-        error = std::max(error, 2.0 * rounding * (1.0 + std::max(std::fabs(a), std::fabs(b))) / std::fabs(slope));
-    }
-    return !(enter > leave + 2.0 * error || enter > 1.0 + error || enter < ray.t_near - error);
-}
-
 // Objects that may block rays: boxes, each with a slightly larger sphere around it that most rays miss.
 class Blockers {
   public:
@@ -65,12 +31,13 @@ class Blockers {
         }
     }
 
-    [[nodiscard]] bool is_free(const WitnessRay& ray) const {
-        const glm::dvec3 along = glm::normalize(ray.along);
+    [[nodiscard]] bool is_free(const oracle::WitnessRay& ray) const {
+        const glm::dvec3 along = glm::normalize(ray.to - ray.from);
         for (std::size_t i = 0; i < radius_squared_.size(); ++i) {
             const glm::dvec3 to(center_[0][i] - ray.from.x, center_[1][i] - ray.from.y, center_[2][i] - ray.from.z);
             const glm::dvec3 beside = glm::cross(to, along);
-            if (glm::dot(beside, beside) <= radius_squared_[i] && may_block(ray, (*boxes_)[i])) return false;
+            if (glm::dot(beside, beside) <= radius_squared_[i] && !oracle::surely_passes(ray, (*boxes_)[i]))
+                return false;
         }
         return true;
     }
@@ -79,20 +46,6 @@ class Blockers {
     const std::vector<Obb>* boxes_;
     std::vector<double> center_[3], radius_squared_;
 };
-
-bool is_in_view(const Frustum& frustum, const glm::dvec3& point) {
-    for (const Plane& plane : frustum.view())
-        if (!(glm::dot(plane.normal, point - frustum.origin) + plane.offset >= 0.0)) return false;
-    return true;
-}
-
-WitnessRay ray_to(const Camera& camera, const glm::dvec3& point) {
-    const glm::dvec3 forward = glm::normalize(camera.forward);
-    const double depth = glm::dot(point - camera.position, forward);
-    const double t_near = camera.near_distance / depth;
-    if (camera.projection == Projection::perspective) return {camera.position, point - camera.position, t_near};
-    return {point - forward * depth, forward * depth, t_near};
-}
 
 void ask_for_objects(Random& random, const OccludeSetup& setup, const Blockers& blockers,
                      const occlude::OcclusionBuffer& buffer, OccludeCounts& counts) {
@@ -104,14 +57,9 @@ void ask_for_objects(Random& random, const OccludeSetup& setup, const Blockers& 
     for (std::size_t i = 0; i < setup.objects.size(); ++i) {
         counts.hidden += !shown[i];
         for (int n = 0; n < 8; ++n) {
-            glm::dvec3 point = setup.objects[i].center;
-            for (int k = 0; k < 3; ++k) {
-                const double t = random.uniform(-1.0, 1.0), end = t < 0.0 ? -1.0 : 1.0;
-                point += (k < n % 4 ? t : end) * static_cast<double>(setup.objects[i].half_extents[k]) *
-                         glm::dvec3(setup.objects[i].axes[k]);
-            }
+            const glm::dvec3 point = test::point_of(random, setup.objects[i]);
             ++counts.rays;
-            if (!is_in_view(frustum, point) || !blockers.is_free(ray_to(setup.camera, point))) continue;
+            if (!test::is_in_view(frustum, point) || !blockers.is_free(test::ray_to(setup.camera, point))) continue;
             ++counts.free;
             counts.culled += !shown[i];
         }
@@ -121,31 +69,15 @@ void ask_for_objects(Random& random, const OccludeSetup& setup, const Blockers& 
 // A ray through each of some covered squares, up to the depth that is stored there: it must not be free.
 void ask_for_pixels(Random& random, const OccludeSetup& setup, const Blockers& blockers,
                     const occlude::OcclusionBuffer& buffer, OccludeCounts& counts) {
-    const Camera& camera = setup.camera;
-    const glm::dmat3 to_world = glm::transpose(world_to_view_rotation(camera));
-    const double half_x = 0.5 * setup.size.width, half_y = 0.5 * setup.size.height;
     const int rays = setup.occluders.size() > kManyOccluders ? 256 : 2048;
     for (int n = 0; n < rays; ++n) {
         const auto x = static_cast<std::uint32_t>(random.bits() % setup.size.width);
         const auto y = static_cast<std::uint32_t>(random.bits() % setup.size.height);
-        const auto nearness = static_cast<double>(buffer.nearness(x, y));
-        if (nearness < -1e38) continue;
-        // 2^-6 of a pixel is left free along the picture's edges.
-        const double u = (x + random.uniform() - half_x) / (half_x - 0x1p-6);
-        const double v = (y + random.uniform() - half_y) / (half_y - 0x1p-6);
-        WitnessRay ray{camera.position, {}, 0.0};
-        if (camera.projection == Projection::perspective) {
-            const double t = std::tan(0.5 * camera.fov_y);
-            ray.along = to_world * glm::dvec3(u * t * camera.aspect, v * t, -1.0) / nearness;
-            ray.t_near = camera.near_distance * nearness;
-        } else {
-            const double half = 0.5 * camera.height;
-            ray.from += to_world * glm::dvec3(u * half * camera.aspect, v * half, 0.0);
-            ray.along = glm::normalize(camera.forward) * -nearness;
-            ray.t_near = camera.near_distance / -nearness;
-        }
+        if (buffer.nearness(x, y) < -1e38f) continue;
+        const double u = random.uniform(), v = random.uniform();
+        const double distance = test::distance_of(setup.camera, buffer.nearness(x, y));
         ++counts.covered_rays;
-        counts.passed += blockers.is_free(ray);
+        counts.passed += blockers.is_free(test::ray_through(setup, x + u, y + v, distance));
     }
 }
 

@@ -3,36 +3,14 @@
 
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <glm/matrix.hpp>
 
 namespace crofton::cli {
 namespace {
 
 using sampling::Random;
+using test::box_at, test::point_in_view;
 
 constexpr occlude::BufferSize kSizes[] = {{64, 36}, {160, 90}, {333, 201}, {640, 360}};
-
-// In the camera's frame: x right, y up, z ahead; all within ±1.1 of the picture at that distance.
-glm::dvec3 at_picture(const Camera& camera, double x, double y, double distance) {
-    const glm::dmat3 to_world = glm::transpose(world_to_view_rotation(camera));
-    const bool perspective = camera.projection == Projection::perspective;
-    const double half = perspective ? distance * std::tan(0.5 * camera.fov_y) : 0.5 * camera.height;
-    return camera.position + to_world * glm::dvec3(half * camera.aspect * x, half * y, -distance);
-}
-
-glm::dvec3 point_in_view(Random& random, const Camera& camera, double distance) {
-    const double x = random.uniform(-1.1, 1.1), y = random.uniform(-1.1, 1.1);
-    return at_picture(camera, x, y, distance);
-}
-
-Obb box_at(Random& random, const glm::dvec3& center, double smallest, double largest) {
-    Obb box;
-    box.center = center;
-    if (random.uniform() < 0.7) box.axes = glm::mat3(sampling::rotation(random.point<3>()));
-    for (int k = 0; k < 3; ++k)
-        box.half_extents[k] = static_cast<float>(smallest * std::pow(largest / smallest, random.uniform()));
-    return box;
-}
 
 Obb box_of(const glm::dvec3& center, double x, double y, double z) {
     Obb box;
@@ -172,37 +150,8 @@ OccludeSetup many_slivers(Random& random, double offset) {
 }  // namespace
 
 OccludeSetup random_setup(Random& random, double offset) {
-    OccludeSetup setup;
-    setup.size = kSizes[random.bits() % 4];
-    Camera& camera = setup.camera;
-    camera.position = offset * glm::dvec3(1.0, -0.75, 0.25) + 3.0 * sampling::direction(random.point<2>());
-    camera.forward = sampling::direction(random.point<2>());
-    camera.up = sampling::direction(random.point<2>());
-    if (random.uniform() < 0.25) camera.projection = Projection::orthographic;
-    camera.fov_y = random.uniform(0.3, 2.0);
-    camera.height = random.uniform(5.0, 40.0);
-    camera.aspect = random.uniform(0.7, 2.0);
-    camera.near_distance = random.uniform(0.05, 1.0);
-    for (std::uint64_t i = 0, count = 2 + random.bits() % 12; i < count; ++i) {
-        const double u = random.uniform();
-        Obb box = box_at(random, point_in_view(random, camera, 0.5 * camera.near_distance + 30.0 * u * u), 0.2, 8.0);
-        const auto k = static_cast<int>(random.bits() % 3);
-        if (random.uniform() < 0.1) box.half_extents[k] = 1e-4f;
-        setup.occluders.push_back(box);
-        if (random.uniform() > 0.2) continue;
-        box.center += 2.0 * static_cast<double>(box.half_extents[k]) * glm::dvec3(box.axes[k]);
-        setup.occluders.push_back(box);
-    }
-    for (int i = 0; i < 256; ++i) {
-        const Obb& beside = setup.occluders[random.bits() % setup.occluders.size()];
-        glm::dvec3 at = beside.center;
-        for (int k = 0; k < 3; ++k)
-            at += random.uniform(-1.1, 1.1) * static_cast<double>(beside.half_extents[k]) * glm::dvec3(beside.axes[k]);
-        const bool perspective = camera.projection == Projection::perspective;
-        at += random.uniform(0.0, 1.5) * (perspective ? at - camera.position : glm::normalize(camera.forward));
-        if (i % 3 == 0) at = point_in_view(random, camera, random.uniform(1.0, 60.0));
-        setup.objects.push_back(box_at(random, at, 0.01, i % 4 ? 0.3 : 3.0));
-    }
+    OccludeSetup setup = test::random_scene(random, offset, 256);
+    setup.size = kSizes[test::pick(random, 4)];
     return setup;
 }
 

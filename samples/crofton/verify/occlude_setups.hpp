@@ -1,19 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Boxes that hide, boxes behind them, and a camera: at random, and as they are known to break occlusion cullers.
 #pragma once
-#include <crofton/geometry/box.hpp>
-#include <crofton/geometry/camera.hpp>
-#include <crofton/occlude/occlusion.hpp>
 #include <crofton/sampling/sampling.hpp>
+#include <oracle/occlusion_scenes.hpp>
 #include <vector>
 
 namespace crofton::cli {
 
-struct OccludeSetup {
-    Camera camera;
-    std::vector<Obb> occluders, objects;
-    occlude::BufferSize size;
-};
+using OccludeSetup = test::OcclusionScene;
 
 // Walls, boxes that touch, slivers, boxes around the eye and across the near plane; objects behind and between them.
 [[nodiscard]] OccludeSetup random_setup(sampling::Random& random, double offset);

@@ -3,10 +3,9 @@
 #include <doctest/doctest.h>
 #include <crofton/occlude/occlusion.hpp>
 #include <oracle/hidden_certificate.hpp>
+#include <oracle/occlusion_scenes.hpp>
 #include <utility>
 #include <vector>
-
-#include "scenes.hpp"
 
 using namespace crofton;
 using namespace crofton::test;

@@ -5,8 +5,8 @@
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/boxtree/structure.hpp>
 #include <crofton/occlude/occlusion.hpp>
-
-#include "scenes.hpp"
+#include <oracle/occlusion_scenes.hpp>
+#include <oracle/witness_rays.hpp>
 
 using namespace crofton;
 using namespace crofton::test;

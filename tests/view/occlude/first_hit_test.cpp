@@ -2,8 +2,7 @@
 // Pictures of what each pixel's ray meets first, with all objects and with those alone that are not hidden.
 #include <doctest/doctest.h>
 #include <crofton/occlude/occlusion.hpp>
-
-#include "scenes.hpp"
+#include <oracle/occlusion_scenes.hpp>
 
 using namespace crofton;
 using namespace crofton::test;

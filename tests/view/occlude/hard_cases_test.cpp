@@ -7,8 +7,8 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <oracle/edges.hpp>
-
-#include "scenes.hpp"
+#include <oracle/occlusion_scenes.hpp>
+#include <oracle/witness_rays.hpp>
 
 using namespace crofton;
 using namespace crofton::test;

@@ -5,8 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <crofton/occlude/occlusion.hpp>
-
-#include "scenes.hpp"
+#include <oracle/occlusion_scenes.hpp>
 
 using namespace crofton;
 using namespace crofton::test;

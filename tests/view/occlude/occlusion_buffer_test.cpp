@@ -2,8 +2,8 @@
 #include <doctest/doctest.h>
 #include <crofton/occlude/occlusion.hpp>
 #include <error_of.hpp>
-
-#include "scenes.hpp"
+#include <oracle/occlusion_scenes.hpp>
+#include <oracle/witness_rays.hpp>
 
 using namespace crofton;
 using namespace crofton::test;

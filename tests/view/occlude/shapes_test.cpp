@@ -5,8 +5,7 @@
 #include <crofton/geometry/predicates.hpp>
 #include <crofton/geometry/shapes.hpp>
 #include <crofton/mesh/mesh_query.hpp>
-
-#include "scenes.hpp"
+#include <oracle/occlusion_scenes.hpp>
 
 using namespace crofton;
 using namespace crofton::test;

@@ -6,8 +6,7 @@
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/occlude/occlusion.hpp>
 #include <error_of.hpp>
-
-#include "scenes.hpp"
+#include <oracle/occlusion_scenes.hpp>
 
 using namespace crofton;
 using namespace crofton::test;

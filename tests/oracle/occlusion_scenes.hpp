@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Random occluders, views and objects, and set-ups that are hard.
+// Random occluders, views and objects, and rays of the views.
 #pragma once
 #include <cmath>
 #include <crofton/geometry/box.hpp>
@@ -8,7 +8,7 @@
 #include <crofton/sampling/sampling.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
-#include <oracle/witness_rays.hpp>
+#include <oracle/box_rays.hpp>
 #include <vector>
 
 namespace crofton::test {
