@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
+#include <iterator>
 #include <numbers>
 
 #include "largest_region.hpp"
@@ -33,6 +34,8 @@ constexpr double kLeastPlan = 2.4, kHighestRoom = 60.0, kLongestPlan = 50'000.0;
 // A straight way that leaves out places stays this near to them in height.
 constexpr double kHeightTolerance = 0.25;
 constexpr std::size_t kLongestStraight = 24;
+// How high a person's eye is in a room of three metres.
+constexpr double kEyeOfRoom = FreeSpace::kPersonEye / 3.0;
 // Directions that are tried from an eye, and eyes.
 constexpr std::uint32_t kDirections = 256, kMostStands = 300;
 constexpr int kHeadings = 24;
@@ -79,6 +82,12 @@ std::optional<FreeSpace> FreeSpace::find(const scene::Scene& scene, const Aabb& 
     const double share = std::min(0.2 * std::max(size.y, 1e-3 * size.x), 0.01 * space.size_);
     if (space.find_places(focus, options, kPersonEye) && space.fits_a_person(focus, options.in_metres)) return space;
     if (!(share > 0.0) || !space.find_places(focus, options, share)) return std::nullopt;
+    const double room = space.median_room();
+    if (!space.is_indoors() || kEyeOfRoom * room <= share) return space;
+    if (space.find_places(focus, options, kEyeOfRoom * room))
+        space.room_height_ = room;
+    else
+        space.find_places(focus, options, share);
     return space;
 }
 
@@ -212,23 +221,25 @@ double FreeSpace::surrounded_share(const glm::dvec3& eye) const {
     return static_cast<double>(met) / kLevelLines;
 }
 
+bool FreeSpace::is_indoors() const {
+    const auto roofed = std::count_if(room_.begin(), room_.end(), [](float room) { return std::isfinite(room); });
+    return 2 * static_cast<std::size_t>(roofed) > places_.size();
+}
+
+double FreeSpace::median_room() const {
+    std::vector<float> rooms;
+    std::copy_if(room_.begin(), room_.end(), std::back_inserter(rooms), [](float room) { return std::isfinite(room); });
+    if (rooms.empty()) return 0.0;
+    std::nth_element(rooms.begin(), rooms.begin() + static_cast<std::ptrdiff_t>(rooms.size() / 2), rooms.end());
+    return static_cast<double>(rooms[rooms.size() / 2]);
+}
+
 // Whether a person would walk there: not on the roof of something closed, nor on a thing that is smaller than a person.
 bool FreeSpace::fits_a_person(const Aabb& focus, bool in_metres) const {
-    std::vector<float> rooms;
-    float worth = 0.0f;
-    for (std::size_t i = 0; i < places_.size(); ++i) {
-        worth = std::max(worth, worth_[i]);
-        if (std::isfinite(room_[i])) rooms.push_back(room_[i]);
-    }
-    if (worth <= kOnBareRoof) return false;
+    if (*std::max_element(worth_.begin(), worth_.end()) <= kOnBareRoof) return false;
     const double longer = std::max(focus.max.x - focus.min.x, focus.max.z - focus.min.z);
-    const bool is_indoors = 2 * rooms.size() > places_.size();
-    if (!is_indoors && longer < kLeastPlan * eye_height_) return false;
-    if (in_metres) return true;
-    if (longer > kLongestPlan) return false;
-    if (rooms.empty()) return true;
-    std::nth_element(rooms.begin(), rooms.begin() + static_cast<std::ptrdiff_t>(rooms.size() / 2), rooms.end());
-    return static_cast<double>(rooms[rooms.size() / 2]) <= kHighestRoom;
+    if (!is_indoors() && longer < kLeastPlan * eye_height_) return false;
+    return in_metres || (longer <= kLongestPlan && median_room() <= kHighestRoom);
 }
 
 // In the eight columns around, no more than a step higher or lower; on long ways the floor may climb.

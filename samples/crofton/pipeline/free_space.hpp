@@ -23,10 +23,11 @@ struct FreeSpaceOptions {
     Aabb within = {};  // where eyes may be; empty: anywhere
 };
 
-// Places of an eye over floors, with ways between neighbours. Eyes are kPersonEye metres above the floor, or a share of
-// the scene's size where no person fits in or lengths are no metres. A floor is what a vertical line meets with room
-// above it to stand. A way follows the floor, and is free where lines at eye height, at each side and at half the
-// height meet nothing. y is up. Lines are single precision: see lines::LineTracer.
+// Places of an eye over floors, with ways between neighbours. Eyes are kPersonEye metres above the floor. Where no
+// person fits in or lengths are no metres, they are at such a share of the rooms' height as a person's, or, in the
+// open, at a share of the scene's size. A floor is what a vertical line meets with room above it to stand. A way
+// follows the floor, and is free where lines at eye height, at each side and at half the height meet nothing. y is up.
+// Lines are single precision: see lines::LineTracer.
 //
 // Of places that ways connect, those that are worth the most are kept. Places under a roof are worth the most, then
 // those under the sky. Closed things whose faces look outward only have an inside as well, which is worth less, and
@@ -43,7 +44,9 @@ class FreeSpace {
 
     [[nodiscard]] std::span<const glm::dvec3> places() const { return places_; }
     [[nodiscard]] double eye_height() const { return eye_height_; }  // of a place over its floor
-    [[nodiscard]] double spacing() const { return spacing_; }        // of neighbouring places
+    // Of the rooms that the eye's height is a share of; 0 where it is not.
+    [[nodiscard]] double room_height() const { return room_height_; }
+    [[nodiscard]] double spacing() const { return spacing_; }  // of neighbouring places
     [[nodiscard]] bool is_for_a_person() const { return eye_height_ == kPersonEye; }
     // A long way through them, as a polyline along free ways; the place alone where there is but one.
     [[nodiscard]] std::vector<glm::dvec3> walk() const;
@@ -62,6 +65,8 @@ class FreeSpace {
     void connect_places();
     void find_edges_of_roofs();
     void keep_best_region();
+    [[nodiscard]] bool is_indoors() const;     // most places are under a roof
+    [[nodiscard]] double median_room() const;  // half of the rooms are lower; 0 without any
     [[nodiscard]] bool fits_a_person(const Aabb& focus, bool in_metres) const;
     [[nodiscard]] double surrounded_share(const glm::dvec3& eye) const;  // of a few level lines
     [[nodiscard]] std::vector<std::uint32_t> neighbours_of(std::uint32_t place) const;
@@ -86,7 +91,7 @@ class FreeSpace {
 
     pvs::BakeGeometry geometry_;
     lines::LineTracer tracer_;
-    double eye_height_ = 0.0, spacing_ = 0.0, size_ = 0.0;
+    double eye_height_ = 0.0, room_height_ = 0.0, spacing_ = 0.0, size_ = 0.0;
     glm::uvec2 columns_{0};
     std::vector<glm::dvec3> places_;              // ascending by column, then by height
     std::vector<float> worth_;                    // by place

@@ -18,8 +18,9 @@ std::string remark_on(const FreeSpace& space, const assets::SceneSource& source,
     if (space.is_for_a_person()) return {};
     const double longer = std::max(focus.max.x - focus.min.x, focus.max.z - focus.min.z);
     return source.name + ": no place for a person of 1.8 m" + (source.in_metres ? "" : ", if lengths are metres") +
-           ": the street is " + in_digits(space.eye_height()) + " above the ground, by the scene's size of " +
-           in_digits(longer);
+           ": the street is " + in_digits(space.eye_height()) + " above the ground, " +
+           (space.room_height() > 0.0 ? "by its rooms' height of " + in_digits(space.room_height())
+                                      : "by the scene's size of " + in_digits(longer));
 }
 
 }  // namespace

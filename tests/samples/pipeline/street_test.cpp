@@ -259,25 +259,30 @@ TEST_SUITE("pipeline/street") {
         for (const glm::dvec3& eye : walked.eyes) CHECK(eye.y == doctest::Approx(kEye).epsilon(1e-3));
     }
 
-    TEST_CASE("if no person fits in, the eye is a share of the size above the floor, and the path reports it") {
-        for (const float size : {0.5f}) {
+    TEST_CASE(
+        "if no person fits in, the eye is where a person's is in a room of three metres, and the path reports it") {
+        // A toy in metres; then millimetres, centimetres and kilometres: the format does not say so, but rooms do.
+        for (const float size : {0.5f, 8'000.0f, 800.0f, 0.008f}) {
             CAPTURE(size);
             Model room;
-            room.box({0, 0, 0}, {size, 0.3f * size, 0.8f * size}, true);
-            const Walked walked = walk_through(room.source());
+            const glm::vec3 whole{size, 0.35f * size, 0.75f * size};
+            room.box({0, 0, 0}, whole, true);
+            room.box(glm::vec3(0.4f, 0.0f, 0.4f) * whole, glm::vec3(0.6f, 0.3f, 0.6f) * whole);
+            const Walked walked = walk_through(room.source(size == 0.5f));
             CHECK(walked.remark.find("no place for a person") != std::string::npos);
+            CHECK((walked.remark.find("if lengths are metres") == std::string::npos) == (size == 0.5f));
+            CHECK(walked.remark.find("by its rooms' height of") != std::string::npos);
             CHECK(walked.under_roof == walked.eyes.size());
-            CHECK(walked.most_over_floor < 0.1 * static_cast<double>(size));
-            CHECK(walked.most_over_floor < 1.01 * walked.least_over_floor);
+            const double eye = 1.7 / 3.0 * static_cast<double>(whole.y);
+            CHECK(walked.least_over_floor > 0.99 * eye);
+            CHECK(walked.most_over_floor < 1.01 * eye);
         }
-        // Millimetres: the format does not say so, but no room is three kilometres high.
-        Model house;
-        house.box({0, 0, 0}, {8'000, 2'800, 6'000}, true);
-        const Walked walked = walk_through(house.source(false));
-        CHECK(walked.remark.find("no place for a person") != std::string::npos);
-        CHECK(walked.remark.find("if lengths are metres") != std::string::npos);
-        CHECK(walked.under_roof == walked.eyes.size());
-        CHECK(walked.least_over_floor > 50.0);
+        // In the open, nothing tells it.
+        Model plate;
+        plate.quad({0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 0, 0});
+        const Walked walked = walk_through(plate.source());
+        CHECK(walked.remark.find("by the scene's size of 1") != std::string::npos);
+        CHECK(walked.most_over_floor < 0.1);
     }
 
     TEST_CASE("with nothing to walk on the street says so, and cameras are valid all the same") {

@@ -7,8 +7,11 @@
 #include <crofton/geometry/camera.hpp>
 #include <crofton/occlude/occlusion.hpp>
 #include <glm/geometric.hpp>
+#include <glm/gtc/matrix_access.hpp>
+#include <glm/vector_relational.hpp>
 #include <random>
 
+#include <oracle/near_misses.hpp>
 #include "shape/collide/random_boxes.hpp"
 
 using namespace crofton;
@@ -120,6 +123,53 @@ TEST_SUITE("occlude/eye_limits") {
         }
         CHECK(used > 1000);
         CHECK(kept_out > 4000);
+    }
+
+    TEST_CASE(
+        "an eye beside a turned piece uses its occluder, also within the bounds along the axes, one inside never") {
+        oracle::NearMisses random(4612);
+        int beside = 0, inside = 0;
+        for (int trial = 0; trial < 20'000; ++trial) {
+            FoundOccluder found;
+            const glm::dvec3 wanted{random.number(0.1, 9.0), random.number(0.1, 9.0), random.number(0.1, 9.0)};
+            const glm::vec3 half(wanted);
+            found.box.half_extents = half;
+            found.surface.positions = {-half, half};
+            found.piece_bounds = {-glm::dvec3(half), glm::dvec3(half)};
+            Transform transform;
+            for (int k = 0; k < 3; ++k)
+                for (int i = 0; i < 3; ++i) transform.linear[k][i] = random.number(-1.0, 1.0);
+            if (std::abs(glm::determinant(transform.linear)) < 0.01) continue;
+            transform.translation = {random.number(-1e3, 1e3), random.number(-1e3, 1e3), random.number(-1e3, 1e3)};
+            const EyeLimits limits = candidate_of(found, transform).limits;
+            // So far beyond one of the sides, in the mesh's own coordinates, or so far within it.
+            const int axis = trial % 3;
+            const double sign = trial % 2 == 0 ? 1.0 : -1.0;
+            const glm::dvec3 own{random.number(-0.9, 0.9), random.number(-0.9, 0.9), random.number(-0.9, 0.9)};
+            Camera camera;
+            camera.near_distance = 1e-4;
+            const double room = 1e-3;  // more than the near plane's farthest point
+            const glm::dvec3 across = glm::row(glm::inverse(transform.linear), axis);
+            const auto eye_at = [&](double beyond) {
+                glm::dvec3 p = own * glm::dvec3(half);
+                p[axis] = sign * (static_cast<double>(half[axis]) + beyond * glm::length(across));
+                return transform * p;
+            };
+            camera.position = eye_at(room);
+            CHECK(may_use(limits, camera));
+            const Aabb& bounds = limits.left_out_within;
+            beside += glm::all(glm::greaterThan(camera.position, bounds.min)) &&
+                      glm::all(glm::lessThan(camera.position, bounds.max));
+            camera.position = eye_at(-room);
+            CHECK_FALSE(may_use(limits, camera));
+            camera.position = eye_at(1e-5);  // nearer than the near plane's corners
+            CHECK_FALSE(may_use(limits, camera));
+            camera.position = transform * (own * glm::dvec3(half));
+            CHECK_FALSE(may_use(limits, camera));
+            ++inside;
+        }
+        CHECK(inside > 15'000);
+        CHECK(beside > 5'000);
     }
 
     TEST_CASE("no parallel view enters by an open side, however sheared its picture, by exact arithmetic") {

@@ -61,6 +61,39 @@ glm::dvec3 nearest_in(const Aabb& box, const glm::dvec3& p) {
     return glm::clamp(p, box.min, box.max);
 }
 
+// A direction across the mesh's sides of axis k, along which this axis rises: right in each component, however sheared
+// the mesh stands. A transform that flattens has none: NaN.
+glm::dvec3 rising_across(const glm::dmat3& linear, int turn, int k) {
+    if (turn == 0) return glm::dvec3(std::numeric_limits<double>::quiet_NaN());
+    return static_cast<double>(turn) * direction_across(linear[(k + 1) % 3], linear[(k + 2) % 3]);
+}
+
+// The plane at right angles to `normal` through translation + along. What an eye far away makes of the normal's
+// rounding, may_use() takes off. What rounding does to the offset is taken off generously. No eye is beyond a plane of
+// NaN.
+Plane side_through(const glm::dvec3& translation, const glm::dvec3& along, const glm::dvec3& normal) {
+    Plane plane;
+    plane.normal = normal;
+    plane.offset = -glm::dot(normal, translation + along) -
+                   0x1p-40 * glm::dot(glm::abs(normal), glm::abs(translation) + glm::abs(along));
+    return plane;
+}
+
+// Whether a box along the axes stays one.
+bool is_along_axes(const glm::dmat3& linear) {
+    int zeros = 0;
+    for (int k = 0; k < 3; ++k)
+        for (int i = 0; i < 3; ++i) zeros += linear[k][i] == 0.0;
+    return zeros >= 6;
+}
+
+// Whether the eye is more than `room` beyond the plane, whatever rounding did.
+bool is_beyond(const Plane& plane, const glm::dvec3& eye, double room) {
+    const double error_bound =
+        0x1p-48 * glm::dot(glm::abs(plane.normal), glm::abs(eye)) + room * glm::length(plane.normal);
+    return glm::dot(plane.normal, eye) + plane.offset >= error_bound;
+}
+
 EyeLimits limits_of(const FoundOccluder& found, const Transform& transform) {
     EyeLimits limits;
     const Aabb& piece = found.piece_bounds;
@@ -74,25 +107,21 @@ EyeLimits limits_of(const FoundOccluder& found, const Transform& transform) {
         error_bound += glm::abs(transform.linear[k]) * std::max(std::abs(piece.min[k]), std::abs(piece.max[k]));
     limits.left_out_within.min -= 0x1p-49 * error_bound;
     limits.left_out_within.max += 0x1p-49 * error_bound;
-    // An open side at coordinate c of the mesh's axis k lies in the plane through translation + c · linear[k] and along
-    // the other two columns. Its normal is right in each component, however sheared the mesh stands: what an eye far
-    // away makes of its rounding, may_use() takes off. What rounding does to the offset is taken off generously. A
-    // transform that flattens has no such planes: they are NaN and keep nothing.
     const int turn = sign_of_determinant(transform.linear);
-    for (int k = 0; k < 3; ++k)
-        for (const bool upper : {true, false}) {
-            const double at = upper ? found.eyes_within.max[k] : found.eyes_within.min[k];
-            if (std::isinf(at)) continue;
-            const glm::dvec3 rising = turn == 0
-                                          ? glm::dvec3(std::numeric_limits<double>::quiet_NaN())
-                                          : static_cast<double>(turn) * direction_across(transform.linear[(k + 1) % 3],
-                                                                                         transform.linear[(k + 2) % 3]);
-            Plane& plane = limits.planes[limits.plane_count++];
-            plane.normal = upper ? -rising : rising;
-            const glm::dvec3 along = at * transform.linear[k];
-            plane.offset = -glm::dot(plane.normal, transform.translation + along) -
-                           0x1p-40 * glm::dot(glm::abs(rising), glm::abs(transform.translation) + glm::abs(along));
-        }
+    const bool is_turned = !is_along_axes(transform.linear);
+    for (int k = 0; k < 3; ++k) {
+        const double eyes_from = found.eyes_within.min[k], eyes_to = found.eyes_within.max[k];
+        if (!is_turned && std::isinf(eyes_from) && std::isinf(eyes_to)) continue;
+        const glm::dvec3 rising = rising_across(transform.linear, turn, k);
+        const auto side = [&](double at, const glm::dvec3& normal) {
+            return side_through(transform.translation, at * transform.linear[k], normal);
+        };
+        if (!std::isinf(eyes_to)) limits.planes[limits.plane_count++] = side(eyes_to, -rising);
+        if (!std::isinf(eyes_from)) limits.planes[limits.plane_count++] = side(eyes_from, rising);
+        if (!is_turned) continue;
+        limits.piece_sides[limits.piece_side_count++] = side(piece.max[k], rising);
+        limits.piece_sides[limits.piece_side_count++] = side(piece.min[k], -rising);
+    }
     return limits;
 }
 
@@ -187,14 +216,13 @@ bool may_use(const EyeLimits& limits, const OcclusionView& view) {
     const glm::dvec3& eye = view.origin;
     if (view.perspective) {
         const double near_radius = (1.0 + 1e-9) * (view.near_radius + view.eye_error);
-        if (!box.is_empty() && !(glm::distance(nearest_in(box, eye), eye) > near_radius)) return false;
-        for (std::uint32_t i = 0; i < limits.plane_count; ++i) {
-            const Plane& plane = limits.planes[i];
-            const double error_bound =
-                0x1p-48 * glm::dot(glm::abs(plane.normal), glm::abs(eye)) + view.eye_error * glm::length(plane.normal);
-            if (!(glm::dot(plane.normal, eye) + plane.offset >= error_bound)) return false;
-        }
-        return true;
+        const auto is_outside = [&](const Plane& side) { return is_beyond(side, eye, near_radius); };
+        const auto* const sides = limits.piece_sides.data();
+        if (!box.is_empty() && !(glm::distance(nearest_in(box, eye), eye) > near_radius) &&
+            std::none_of(sides, sides + limits.piece_side_count, is_outside))
+            return false;
+        return std::all_of(limits.planes.data(), limits.planes.data() + limits.plane_count,
+                           [&](const Plane& plane) { return is_beyond(plane, eye, view.eye_error); });
     }
     const Plane& near_plane = view.frustum.planes[4];
     if (!box.is_empty()) {

@@ -54,7 +54,11 @@ struct OcclusionView {
 
 // The eyes that must not use an occluder: by the piece that contains it, and by that piece's open sides.
 struct EyeLimits {
-    Aabb left_out_within;  // FoundOccluder::piece_bounds; empty: none
+    Aabb left_out_within;  // around FoundOccluder::piece_bounds; empty: none
+    // The sides of piece_bounds, which are not along the axes if the mesh is turned. An eye in left_out_within that is
+    // beyond one of them may use the occluder. None where left_out_within is all.
+    std::array<Plane, 6> piece_sides{};
+    std::uint32_t piece_side_count = 0;
     // The eye must be on the inner side of all these planes (FoundOccluder::eyes_within).
     std::array<Plane, 6> planes{};
     std::uint32_t plane_count = 0;
