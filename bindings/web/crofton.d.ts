@@ -87,6 +87,9 @@ export interface ViewRequest {
     occlusion?: { listOccluded?: boolean; width?: number; height?: number; maxOccluders?: number; leastCover?: number };
     /** Instead of occlusion; `depth` is the depth range of the projection, 'reversed' by default; `samples` in each pixel: 1, 2, 4 or 8. */
     picture?: { width?: number; height?: number; depth?: Depth; samples?: number };
+    /** With a picture that is a light's shadow map: lists only the triangles whose shadows a camera could see. `seen` is the answer to the
+     * camera's view, with a picture; `radius`, 1 by default: how far a lookup's texels are from its point along each axis. */
+    receivers?: { seen: ViewResult; radius?: number };
     limits?: DrawLimits;
     /** Bit i says whether object i may be seen. Objects that have moved since their first update may always be seen. */
     candidates?: Bits;

@@ -176,6 +176,13 @@ namespace Crofton {
         }
 
         [StructLayout(LayoutKind.Sequential)]
+        internal struct ShadowReceiversData {
+            public UIntPtr Size;
+            public IntPtr Seen;
+            public double Radius;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
         internal struct ViewInfo {
             public UIntPtr Size;
             public ulong NodesTested, BoxesTested, AcceptedWhole, Straddling, ExactTests, FalsePositives;
@@ -231,6 +238,7 @@ namespace Crofton {
         [DllImport(Library)] internal static extern ViewMatrixData crofton_default_view_matrix();
         [DllImport(Library)] internal static extern DrawLimitsData crofton_default_draw_limits();
         [DllImport(Library)] internal static extern PictureData crofton_default_picture_view();
+        [DllImport(Library)] internal static extern ShadowReceiversData crofton_default_shadow_receivers();
         [DllImport(Library)] internal static extern FitOptionsData crofton_default_fit_options();
         [DllImport(Library)] internal static extern int crofton_frustum_from_camera(ref CameraData camera, ref FrustumData frustum);
         [DllImport(Library)] internal static extern int crofton_frustum_from_matrix(double[] toClip, uint depth, ref Vector3 origin, ref FrustumData frustum);

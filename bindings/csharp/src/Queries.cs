@@ -156,6 +156,14 @@ namespace Crofton {
         public ulong WorkLimit;
     }
 
+    /// <summary>What a camera sees, for the view of a light.</summary>
+    public sealed class ShadowReceivers {
+        /// <summary>The answer to the camera's view alone, which had a Picture; not the one that the light's answer goes to. It holds until an update changes something, or an object or a mesh is removed.</summary>
+        public ViewResult Seen;
+        /// <summary>0.5 to 1024: a lookup reads texels whose centres are at most this far from its point along each axis. 0.5 for the nearest texel, 1 for a bilinear comparison, r + 1 for one in each of (2 r + 1)² texels.</summary>
+        public double Radius = 1;
+    }
+
     /// <summary>Limits that leave out objects that are too small or too far away.</summary>
     public sealed class DrawLimits {
         /// <summary>The point that distances are measured from.</summary>
@@ -207,6 +215,8 @@ namespace Crofton {
         public OcclusionOptions Occlusion;
         /// <summary>If set, lists the triangles that this picture needs: ViewResult.Triangles. Use it instead of Occlusion.</summary>
         public PictureView Picture;
+        /// <summary>If set, Picture is the shadow map of a light, and only the triangles are listed without which a shadow on what a camera sees would change.</summary>
+        public ShadowReceivers Receivers;
         /// <summary>If set, leaves out objects that are too small or too far away.</summary>
         public DrawLimits Limits;
         /// <summary>If set, bit i % 64 of word i / 64 says whether the object with index i may be seen. Objects that have moved since their first update may always be seen.</summary>
@@ -254,6 +264,7 @@ namespace Crofton {
         sealed class Copies : IDisposable {
             readonly System.Collections.Generic.List<IntPtr> memory = new System.Collections.Generic.List<IntPtr>();
             readonly System.Collections.Generic.List<GCHandle> pinned = new System.Collections.Generic.List<GCHandle>();
+            readonly System.Collections.Generic.List<SafeHandle> held = new System.Collections.Generic.List<SafeHandle>();
 
             internal Native.ViewRequestData Of(ViewRequest request) {
                 Native.ViewRequestData data = Native.crofton_default_view_request();
@@ -274,10 +285,18 @@ namespace Crofton {
                     picture.WorkLimit = request.Picture.WorkLimit;
                     data.Picture = Copied(picture);
                 }
+                if (request.Receivers != null) data.Receivers = Copied(Of(request.Receivers));
                 if (request.CandidateMask != null) {
                     data.CandidateMask = Pinned(request.CandidateMask);
                     data.CandidateWords = (UIntPtr)request.CandidateMask.Length;
                 }
+                return data;
+            }
+            Native.ShadowReceiversData Of(ShadowReceivers receivers) {
+                Library.NotNull(receivers.Seen, "Seen");
+                Native.ShadowReceiversData data = Native.crofton_default_shadow_receivers();
+                data.Seen = Held(receivers.Seen.Handle);
+                data.Radius = receivers.Radius;
                 return data;
             }
             Native.ViewMatrixData Of(ViewMatrix matrix) {
@@ -314,6 +333,12 @@ namespace Crofton {
                 Marshal.StructureToPtr(data, copy, false);
                 return copy;
             }
+            IntPtr Held(SafeHandle handle) {
+                bool isHeld = false;
+                handle.DangerousAddRef(ref isHeld);
+                held.Add(handle);
+                return handle.DangerousGetHandle();
+            }
             IntPtr Pinned(Array numbers) {
                 var handle = GCHandle.Alloc(numbers, GCHandleType.Pinned);
                 pinned.Add(handle);
@@ -322,6 +347,7 @@ namespace Crofton {
             public void Dispose() {
                 foreach (IntPtr copy in memory) Marshal.FreeHGlobal(copy);
                 foreach (GCHandle handle in pinned) handle.Free();
+                foreach (SafeHandle handle in held) handle.DangerousRelease();
             }
         }
 

@@ -59,6 +59,29 @@ static class WorldTests {
             Expect.Fails(Status.InvalidArgument, () => world.View(request, visible));
         }
     }
+    [Test] static void ALightListsWhatThrowsAShadowOnWhatTheCameraSees() {
+        ObjectHandle[] o;
+        MeshHandle mesh;
+        using (var world = Walls(out o, out mesh))
+        using (var seen = new ViewResult())
+        using (var casters = new ViewResult()) {
+            var picture = new PictureView { Width = 160, Height = 90 };
+            world.View(new ViewRequest { Camera = new Camera(), Picture = picture }, seen);
+            var request = new ViewRequest {
+                Camera = new Camera { Position = new Vector3(1, 0, 1) }, Picture = picture,
+                Receivers = new ShadowReceivers { Seen = seen, Radius = 2 }
+            };
+            world.View(request, casters);
+            Expect.True(Users(casters).Contains(0ul) && !Users(casters).Contains(1ul));
+            Expect.True(casters.Triangles().Length > 0);
+            Expect.Fails(Status.InvalidArgument, () => world.View(request, seen));
+            request.Receivers.Radius = 0;
+            Expect.Fails(Status.OutOfRange, () => world.View(request, casters));
+            request.Receivers.Radius = 2;
+            world.Remove(o[2]);
+            Expect.Fails(Status.InvalidArgument, () => world.View(request, casters));
+        }
+    }
     [Test] static void EachOfManyViewsIsObeyed() {
         ObjectHandle[] o;
         MeshHandle mesh;

@@ -336,6 +336,9 @@ class PictureView:
     def __init__(self, width: int = 1280, height: int = 720, *, depth: str = "reversed_zero_to_one",
                  samples: int = 1, work_limit: int = 0) -> None: ...
 
+class ShadowReceivers:
+    def __init__(self, seen: ViewResult, *, radius: float = 1.0) -> None: ...
+
 class DrawLimits:
     def __init__(self, eye: Vector, *, max_distance_in_radii: float = ..., least_radius: float = 0.0,
                  layer_distances: Optional[npt.ArrayLike] = None, item_distances: Optional[npt.ArrayLike] = None,
@@ -347,7 +350,7 @@ class ViewRequest:
     def __init__(self, camera: Optional[View] = None, *, matrix: Optional[Union[ViewMatrix, npt.ArrayLike]] = None,
                  volume: Optional[Frustum] = None, layers: Optional[int] = None,
                  occlusion: Optional[Union[OcclusionOptions, bool]] = None, picture: Optional[PictureView] = None,
-                 limits: Optional[DrawLimits] = None, candidates: Optional[npt.ArrayLike] = None,
+                 receivers: Optional[ShadowReceivers] = None, limits: Optional[DrawLimits] = None, candidates: Optional[npt.ArrayLike] = None,
                  order: Optional[str] = None, conservative: Optional[bool] = None) -> None: ...
 
 class ViewResult:
@@ -425,7 +428,7 @@ class World:
     def view(self, camera: Optional[View] = None, *, matrix: Optional[Union[ViewMatrix, npt.ArrayLike]] = None,
              volume: Optional[Frustum] = None, layers: Optional[int] = None,
              occlusion: Optional[Union[OcclusionOptions, bool]] = None, picture: Optional[PictureView] = None,
-             limits: Optional[DrawLimits] = None, candidates: Optional[npt.ArrayLike] = None,
+             receivers: Optional[ShadowReceivers] = None, limits: Optional[DrawLimits] = None, candidates: Optional[npt.ArrayLike] = None,
              order: Optional[str] = None, conservative: Optional[bool] = None) -> ViewResult: ...
     @overload
     def view(self, camera: ViewRequest) -> ViewResult: ...

@@ -126,6 +126,7 @@ std::string show(const HeldRequest& held) {
                                                 {"layers", r.layers != ~0u},
                                                 {"occlusion", r.occlusion.has_value()},
                                                 {"picture", r.picture.has_value()},
+                                                {"receivers", r.receivers.has_value()},
                                                 {"limits", r.limits != nullptr},
                                                 {"candidates", !r.candidate_mask.empty()},
                                                 {"order='tree'", r.order == cull::ResultOrder::tree},
@@ -139,10 +140,11 @@ std::string show(const HeldRequest& held) {
 }  // namespace
 
 const char* RequestArguments::first_given() const {
-    const std::pair<const char*, py::handle> all[] = {
-        {"matrix", matrix},         {"volume", volume},   {"layers", layers},
-        {"occlusion", occlusion},   {"picture", picture}, {"limits", limits},
-        {"candidates", candidates}, {"order", order},     {"conservative", conservative}};
+    const std::pair<const char*, py::handle> all[] = {{"matrix", matrix},   {"volume", volume},
+                                                      {"layers", layers},   {"occlusion", occlusion},
+                                                      {"picture", picture}, {"receivers", receivers},
+                                                      {"limits", limits},   {"candidates", candidates},
+                                                      {"order", order},     {"conservative", conservative}};
     for (const auto& [name, value] : all)
         if (!value.is_none()) return name;
     return nullptr;
@@ -170,6 +172,12 @@ void read_request(const RequestArguments& given, HeldRequest& result) {
     if (!given.picture.is_none()) {
         if (!py::isinstance<depth::PictureView>(given.picture)) raise_type("picture: a PictureView is expected");
         request.picture = given.picture.cast<const depth::PictureView&>();
+    }
+    if (!given.receivers.is_none()) {
+        if (!py::isinstance<HeldReceivers>(given.receivers)) raise_type("receivers: ShadowReceivers are expected");
+        const auto& held = given.receivers.cast<const HeldReceivers&>();
+        result.seen = held.seen;
+        request.receivers = ShadowReceivers{&held.seen.cast<const SeenByOne&>().found(), held.radius};
     }
     if (!given.limits.is_none()) {
         if (!py::isinstance<HeldLimits>(given.limits)) raise_type("limits: DrawLimits are expected");
@@ -225,6 +233,18 @@ void bind_view_requests(py::module_& module) {
             return format("PictureView(%u, %u, depth='%s')", p.width, p.height, depth_name(p.depth));
         });
 
+    py::class_<HeldReceivers>(module, "ShadowReceivers", "What a camera sees, for the view of a light.")
+        .def(py::init([](const py::object& seen, double radius) {
+                 if (!py::isinstance<SeenByOne>(seen)) raise_type("seen: a ViewResult is expected");
+                 return HeldReceivers{seen, static_cast<float>(radius)};
+             }),
+             py::arg("seen"), py::kw_only(), py::arg("radius") = double{ShadowReceivers{}.radius},
+             "`seen` is the result of the camera's view, which had a picture; it holds until an update changes "
+             "something, or an object or a mesh is removed. A lookup of the shadow map reads texels whose centres are "
+             "at most `radius` from its point along each axis: 0.5 for the nearest texel, 1 for a bilinear comparison, "
+             "r + 1 for one in each of (2 r + 1)^2 texels.")
+        .def("__repr__", [](const HeldReceivers& r) { return format("ShadowReceivers(radius=%g)", double{r.radius}); });
+
     py::class_<HeldLimits, std::shared_ptr<HeldLimits>>(module, "DrawLimits",
                                                         "Limits of what is drawn, by size and distance.")
         .def(py::init(&make_limits), py::arg("eye"), py::kw_only(),
@@ -248,18 +268,19 @@ void bind_view_requests(py::module_& module) {
         module, "ViewRequest", "The arguments of World.view, prepared once for many calls. Arrays are copied.")
         .def(py::init([](const py::object& camera, const py::object& matrix, const py::object& volume,
                          const py::object& layers, const py::object& occlusion, const py::object& picture,
-                         const py::object& limits, const py::object& candidates, const py::object& order,
-                         const py::object& conservative) {
+                         const py::object& receivers, const py::object& limits, const py::object& candidates,
+                         const py::object& order, const py::object& conservative) {
                  auto held = std::make_shared<HeldRequest>();
-                 read_request(
-                     {camera, matrix, volume, layers, occlusion, picture, limits, candidates, order, conservative},
-                     *held);
+                 read_request({camera, matrix, volume, layers, occlusion, picture, receivers, limits, candidates, order,
+                               conservative},
+                              *held);
                  return held;
              }),
              py::arg("camera") = py::none(), py::kw_only(), py::arg("matrix") = py::none(),
              py::arg("volume") = py::none(), py::arg("layers") = py::none(), py::arg("occlusion") = py::none(),
-             py::arg("picture") = py::none(), py::arg("limits") = py::none(), py::arg("candidates") = py::none(),
-             py::arg("order") = py::none(), py::arg("conservative") = py::none(), "The arguments of World.view.")
+             py::arg("picture") = py::none(), py::arg("receivers") = py::none(), py::arg("limits") = py::none(),
+             py::arg("candidates") = py::none(), py::arg("order") = py::none(), py::arg("conservative") = py::none(),
+             "The arguments of World.view.")
         .def("__repr__", &show);
 }
 

@@ -4,6 +4,7 @@
 #include <crofton/crofton.hpp>
 #include <memory>
 #include <mutex>
+#include <utility>
 #include <vector>
 
 #include "convert.hpp"
@@ -22,11 +23,18 @@ struct HeldRequest {
     ViewRequest request;
     std::shared_ptr<const HeldLimits> limits;
     std::vector<std::uint64_t> candidates;
+    py::object seen;  // by the camera, for the view of a light
+};
+
+// What a light's view is given: a ViewResult, and the radius of lookups.
+struct HeldReceivers {
+    py::object seen;
+    float radius = 1.0f;
 };
 
 // The arguments of World.view and of ViewRequest; None: not given.
 struct RequestArguments {
-    py::handle camera, matrix, volume, layers, occlusion, picture, limits, candidates, order, conservative;
+    py::handle camera, matrix, volume, layers, occlusion, picture, receivers, limits, candidates, order, conservative;
 
     // The first that is given besides the camera, or nullptr.
     [[nodiscard]] const char* first_given() const;
@@ -72,5 +80,35 @@ struct AnswerPools {
     AnswerPool<ViewResult> one;
     AnswerPool<MultiViewResult> many;
 };
+
+// What a view saw, or several. The handles and user numbers were looked up with it, so that the World may change
+// afterwards; arrays are made when they are asked for, and keep this alive.
+template <class Result>
+class Seen {
+  public:
+    explicit Seen(std::shared_ptr<AnswerPools> pools, AnswerPool<Result>& pool)
+        : pools_(std::move(pools)), pool_(&pool), answer_(pool.take()) {}
+    Seen(Seen&&) noexcept = default;
+    Seen& operator=(Seen&&) = delete;
+    ~Seen() {
+        if (answer_) pool_->give_back(std::move(answer_));
+    }
+    [[nodiscard]] Answer<Result>& answer() { return *answer_; }
+    [[nodiscard]] const Answer<Result>& answer() const { return *answer_; }
+    [[nodiscard]] const Result& found() const { return answer_->found; }
+
+    // While the World is locked.
+    void look_up() {
+        answer_->objects.clear();
+        for (std::size_t i = 0; i < found().size(); ++i) answer_->objects.push_back(found()[i]);
+    }
+
+  private:
+    std::shared_ptr<AnswerPools> pools_;
+    AnswerPool<Result>* pool_;
+    std::unique_ptr<Answer<Result>> answer_;
+};
+using SeenByOne = Seen<ViewResult>;
+using SeenByMany = Seen<MultiViewResult>;
 
 }  // namespace crofton::python

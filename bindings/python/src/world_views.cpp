@@ -11,36 +11,6 @@
 namespace crofton::python {
 namespace {
 
-// What a view saw, or several. The handles and user numbers were looked up with it, so that the World may change
-// afterwards; arrays are made when they are asked for, and keep this alive.
-template <class Result>
-class Seen {
-  public:
-    explicit Seen(std::shared_ptr<AnswerPools> pools, AnswerPool<Result>& pool)
-        : pools_(std::move(pools)), pool_(&pool), answer_(pool.take()) {}
-    Seen(Seen&&) noexcept = default;
-    Seen& operator=(Seen&&) = delete;
-    ~Seen() {
-        if (answer_) pool_->give_back(std::move(answer_));
-    }
-    [[nodiscard]] Answer<Result>& answer() { return *answer_; }
-    [[nodiscard]] const Answer<Result>& answer() const { return *answer_; }
-    [[nodiscard]] const Result& found() const { return answer_->found; }
-
-    // While the World is locked.
-    void look_up() {
-        answer_->objects.clear();
-        for (std::size_t i = 0; i < found().size(); ++i) answer_->objects.push_back(found()[i]);
-    }
-
-  private:
-    std::shared_ptr<AnswerPools> pools_;
-    AnswerPool<Result>* pool_;
-    std::unique_ptr<Answer<Result>> answer_;
-};
-using SeenByOne = Seen<ViewResult>;
-using SeenByMany = Seen<MultiViewResult>;
-
 struct TriangleRecord {
     std::uint32_t object, cluster;
     std::uint64_t triangles;
@@ -120,7 +90,7 @@ SeenByMany view_many(const PyWorld& python_world, const py::sequence& given) {
         } else {
             const py::none none;
             held.push_back(std::make_shared<HeldRequest>());
-            read_request({one, none, none, none, none, none, none, none, none, none}, *held.back());
+            read_request({one, none, none, none, none, none, none, none, none, none, none}, *held.back());
         }
         requests.push_back(held.back()->request);
     }
@@ -154,8 +124,8 @@ py::object view(const PyWorld& world, const RequestArguments& given) {
     return py::cast(view_one(world, held.request));
 }
 
-constexpr std::array kArguments = {"camera",  "matrix", "volume",     "layers", "occlusion",
-                                   "picture", "limits", "candidates", "order",  "conservative"};
+constexpr std::array kArguments = {"camera",    "matrix", "volume",     "layers", "occlusion",   "picture",
+                                   "receivers", "limits", "candidates", "order",  "conservative"};
 
 // The first argument may come by place, the others by name.
 RequestArguments arguments_of(PyObject* const* values, Py_ssize_t count, PyObject* names) {
@@ -172,7 +142,7 @@ RequestArguments arguments_of(PyObject* const* values, Py_ssize_t count, PyObjec
         if (k == 0 && count == 1) raise_type("view: the camera is given twice");
         all[k] = values[count + i];
     }
-    return {all[0], all[1], all[2], all[3], all[4], all[5], all[6], all[7], all[8], all[9]};
+    return {all[0], all[1], all[2], all[3], all[4], all[5], all[6], all[7], all[8], all[9], all[10]};
 }
 
 // World.view as Python calls it: by vectorcall, as pybind11's dispatcher would take most of a small view's time.
@@ -194,11 +164,14 @@ PyObject* view_method(PyObject* self, PyObject* const* values, Py_ssize_t count,
 }
 
 constexpr const char* kViewText =
-    "view($self, camera=None, *, matrix=None, volume=None, layers=None, occlusion=None, picture=None, limits=None, "
-    "candidates=None, order=None, conservative=None)\n--\n\n"
+    "view($self, camera=None, *, matrix=None, volume=None, layers=None, occlusion=None, picture=None, "
+    "receivers=None, limits=None, candidates=None, order=None, conservative=None)\n--\n\n"
     "Returns what a Camera, a ViewMatrix or any Frustum (`volume`) sees of the objects in `layers`. `occlusion` "
     "(OcclusionOptions or True) leaves out what other objects hide. `picture` (a PictureView) lists the triangles that "
-    "the picture needs. `limits` (DrawLimits) leaves out objects that are small or far. `candidates` (bools by object "
+    "the picture needs; with `receivers` (ShadowReceivers) it is a light's shadow map, and only the triangles are "
+    "listed "
+    "whose shadows the camera could see. `limits` (DrawLimits) leaves out objects that are small or far. `candidates` "
+    "(bools by object "
     "index) leaves out all others, except those that are new or have moved. `order` is 'ascending' or 'tree', which is "
     "faster. `conservative` tests planes only. Pass a ViewRequest alone, or a list of up to 32 for a MultiViewResult. "
     "Arguments that cannot be obeyed are refused.";

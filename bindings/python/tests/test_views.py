@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """What World.view is asked for is obeyed, alone and in a list, or refused by name."""
 
+import gc
+
 import numpy as np
 import pytest
 
@@ -166,6 +168,41 @@ def test_a_picture_lists_the_triangles_that_the_depth_culler_lists(town, cube):
     assert sum(bin(int(b)).count("1") for b in in_front["triangles"][in_front["object"] == added]) == 2
 
 
+def test_a_light_lists_what_throws_a_shadow_on_what_the_camera_sees(town, cube):
+    world, indices, meshes = town
+    picture, lamp = crofton.PictureView(160, 90), crofton.Camera(position=(0, 9, -8), forward=(0, -1, -0.2))
+    seen = world.view(crofton.Camera(), picture=picture)
+    shadows = {"picture": crofton.PictureView(128, 128), "receivers": crofton.ShadowReceivers(seen, radius=2)}
+    everything = world.view(lamp, picture=crofton.PictureView(128, 128))
+    casters = world.view(lamp, **shadows)
+    assert 0 < casters.statistics["triangles_listed"] <= everything.statistics["triangles_listed"]
+    assert names(town, casters.ids) <= names(town, everything.ids)
+    request = crofton.ViewRequest(lamp, **shadows)
+    assert "receivers" in repr(request) and "radius=2" in repr(shadows["receivers"])
+    assert (world.view(request).triangles == casters.triangles).all()
+    assert (world.view([request, crofton.Camera()]).triangles(0) == casters.triangles).all()
+    # The request holds the camera's result.
+    del seen, shadows
+    gc.collect()
+    assert (world.view(request).triangles == casters.triangles).all()
+    # A camera that looks away from all of it.
+    away = world.view(crofton.Camera(forward=(0, 1, 0.01)), picture=picture)
+    nothing = world.view(lamp, picture=picture, receivers=crofton.ShadowReceivers(away))
+    assert len(nothing) == len(nothing.triangles) == 0
+    for receivers, says in [(crofton.ShadowReceivers(away, radius=0), "radius"),
+                            (crofton.ShadowReceivers(world.view(crofton.Camera())), "receivers")]:
+        with pytest.raises(crofton.Error, match=says):
+            world.view(lamp, picture=picture, receivers=receivers)
+    with pytest.raises(crofton.Error, match="receivers.*picture"):
+        world.view(lamp, receivers=crofton.ShadowReceivers(away))
+    with pytest.raises(TypeError, match="^seen: "):
+        crofton.ShadowReceivers(lamp)
+    world.add(mesh=world.add_mesh(*cube, clusters=True), transform=at(0, 3, -8))
+    world.update()
+    with pytest.raises(crofton.Error, match="changed since"):
+        world.view(request)
+
+
 def test_meshes_without_clusters_have_none(town, cube):
     world = town[0]
     plain = world.add_mesh(*cube)
@@ -214,7 +251,7 @@ def test_views_of_one_call_have_one_order_and_are_at_most_32(town):
 @pytest.mark.parametrize("options, says", [
     ({"camera": 5}, "^camera: "), ({"camera": [5]}, "^camera: "), ({"matrix": np.eye(3)}, "^matrix: "),
     ({"volume": crofton.Camera()}, "^volume: "), ({"layers": -1}, "^layers: "), ({"layers": 2**32}, "^layers: "),
-    ({"occlusion": 1}, "^occlusion: "), ({"picture": (160, 90)}, "^picture: "), ({"limits": 5.0}, "^limits: "),
+    ({"occlusion": 1}, "^occlusion: "), ({"picture": (160, 90)}, "^picture: "), ({"receivers": 1}, "^receivers: "), ({"limits": 5.0}, "^limits: "),
     ({"candidates": [1, 2]}, "^candidates: "), ({"candidates": np.ones((2, 2), bool)}, "^candidates: "),
     ({"order": 5}, "^order: "), ({"conservative": 1}, "^conservative: "),
     ({"camera": crofton.ViewRequest(crofton.Camera()), "layers": 1}, "^layers: "),

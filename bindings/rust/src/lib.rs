@@ -44,7 +44,7 @@ pub use jobs::{Executor, Threads};
 pub use occlusion::{FindOptions, OcclusionOptions, OcclusionStatistics};
 pub use queries::{Closest, Contact, Containment, Found, MeshContact, ObjectHit, ObjectPair, Phase, QueryShape};
 pub use triangulate::{Method, Triangulation, Triangulator};
-pub use views::{Cluster, Clusters, DrawLimits, PictureView, Seen, SeenByMany};
+pub use views::{Cluster, Clusters, DrawLimits, PictureView, Seen, SeenByMany, ShadowReceivers};
 pub use views::{ViewMatrix, ViewRequest, ViewResult, VisibleCluster};
 pub use world::{Mesh, Node, Object, ObjectRef, Statistics, World, WorldOptions};
 

@@ -335,7 +335,14 @@ pub struct ViewRequest {
     pub conservative: u32,
     pub tree_order: u32,
     pub picture: *const PictureView,
-    pub receivers: *const c_void,
+    pub receivers: *const ShadowReceivers,
+}
+
+#[repr(C)]
+pub struct ShadowReceivers {
+    pub size: usize,
+    pub seen: *const ViewResult,
+    pub radius: f64,
 }
 
 #[repr(C)]

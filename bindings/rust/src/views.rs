@@ -36,6 +36,9 @@ pub struct ViewRequest<'a> {
     /// If set, lists the triangles that this picture needs: [`Seen::triangles`]. Use it instead of
     /// `occlusion`.
     pub picture: Option<PictureView>,
+    /// If set, `picture` is the shadow map of a light, and only the triangles are listed without which a shadow on what
+    /// a camera sees would change.
+    pub receivers: Option<ShadowReceivers<'a>>,
     /// If set, leaves out objects that are too small or too far away.
     pub limits: Option<&'a DrawLimits<'a>>,
     /// If not empty, bit i % 64 of word i / 64 says whether the object with index i may be seen. Objects that have
@@ -62,6 +65,16 @@ pub struct PictureView {
     /// 0 for no limit. Otherwise a number of clusters that are tested and of triangles that are drawn, together; what is
     /// left after that is listed whole unless its box is hidden.
     pub work_limit: u64,
+}
+
+/// What a camera sees, for the view of a light.
+#[derive(Clone, Copy)]
+pub struct ShadowReceivers<'a> {
+    /// The answer to the camera's view, which had a picture.
+    pub seen: &'a Seen<'a>,
+    /// 0.5 to 1024: a lookup reads texels whose centres are at most this far from its point along each axis. 0.5 for the
+    /// nearest texel, 1 for a bilinear comparison, r + 1 for one in each of (2 r + 1)^2 texels.
+    pub radius: f64,
 }
 
 /// Limits that leave out objects that are too small or too far away.
@@ -159,6 +172,7 @@ impl Default for ViewRequest<'_> {
             layers: u32::MAX,
             occlusion: None,
             picture: None,
+            receivers: None,
             limits: None,
             candidate_mask: &[],
             conservative: false,
@@ -184,6 +198,7 @@ struct Asked<'a> {
     matrix: Option<sys::ViewMatrix>,
     occlusion: Option<sys::OcclusionOptions>,
     picture: Option<sys::PictureView>,
+    receivers: Option<sys::ShadowReceivers>,
     limits: Option<sys::DrawLimits>,
 }
 
@@ -209,6 +224,11 @@ impl<'a> Asked<'a> {
                 samples: p.samples,
                 work_limit: p.work_limit,
             }),
+            receivers: request.receivers.map(|r| sys::ShadowReceivers {
+                size: size_of::<sys::ShadowReceivers>(),
+                seen: r.seen.result.raw,
+                radius: r.radius,
+            }),
             limits: request.limits.map(|l| l.raw()),
         }
     }
@@ -222,6 +242,7 @@ impl<'a> Asked<'a> {
         raw.candidate_mask = self.request.candidate_mask.as_ptr();
         raw.candidate_words = self.request.candidate_mask.len();
         raw.picture = pointer(&self.picture);
+        raw.receivers = pointer(&self.receivers);
         raw.limits = pointer(&self.limits);
         raw.conservative = self.request.conservative as u32;
         raw.tree_order = self.request.tree_order as u32;

@@ -169,6 +169,29 @@ fn a_picture_lists_the_triangles_that_it_needs() {
 }
 
 #[test]
+fn a_light_lists_what_throws_a_shadow_on_what_the_camera_sees() {
+    let (world, _, objects) = walls();
+    let picture = Some(PictureView { width: 160, height: 90, depth: DepthRange::ReversedZeroToOne, samples: 1, work_limit: 0 });
+    let (mut of_camera, mut of_lamp) = (ViewResult::new().unwrap(), ViewResult::new().unwrap());
+    let seen = world.view(&ViewRequest { picture, ..Camera::default().into() }, &mut of_camera).unwrap();
+    // The second wall is hidden from the camera and from a lamp beside it.
+    let lamp = Camera { position: [1.0, 0.0, 1.0], ..Camera::default() };
+    let receivers = Some(ShadowReceivers { seen: &seen, radius: 2.0 });
+    let request = ViewRequest { picture, receivers, ..lamp.into() };
+    let casters = world.view(&request, &mut of_lamp).unwrap();
+    assert!(casters.ids().contains(&objects[0].index) && !casters.ids().contains(&objects[1].index));
+    let behind = Camera { position: [0.0, 0.0, -30.0], ..Camera::default() };
+    let of_behind = ViewRequest { camera: Some(behind), ..request.clone() };
+    assert!(world.view(&of_behind, &mut of_lamp).unwrap().triangles().unwrap().iter().all(|t| t.object != objects[1].index));
+    let no_radius = ViewRequest { receivers: Some(ShadowReceivers { seen: &seen, radius: 0.0 }), ..request.clone() };
+    assert_eq!(world.view(&no_radius, &mut of_lamp).err().unwrap().status, Status::OutOfRange);
+    let no_map = ViewRequest { picture: None, ..request.clone() };
+    assert_eq!(world.view(&no_map, &mut of_lamp).err().unwrap().status, Status::InvalidArgument);
+    let (other, _, _) = walls();
+    assert_eq!(other.view(&request, &mut of_lamp).err().unwrap().status, Status::InvalidArgument);
+}
+
+#[test]
 fn each_of_many_views_is_obeyed_as_it_is_alone() {
     let (world, _, objects) = walls();
     let camera = || ViewRequest::from(Camera::default());

@@ -195,7 +195,8 @@ export class World extends Owned {
      * Lists what a view sees. Set `camera`, `matrix` (with `depth` and `origin`, as in Frustum) or `volume`, a Frustum; with
      * occlusion also a camera or matrix beside a volume. `layers`; `occlusion`: leaves out what others hide, `{ listOccluded, width, height,
      * maxOccluders, leastCover }`; `picture`: `{ width, height, depth, samples }`, lists the triangles that it needs, instead of
-     * occlusion; `limits`: leaves out what is small or far; `candidates`: bits by object index, BigUint64Array or
+     * occlusion; `receivers`: `{ seen, radius }`, with a picture that is a light's shadow map lists only the triangles whose shadows the
+     * camera could see, whose view with a picture `seen` answered; `limits`: leaves out what is small or far; `candidates`: bits by object index, BigUint64Array or
      * Uint32Array; `treeOrder`, `conservative`.
      */
     view(request, visible) {
@@ -203,10 +204,10 @@ export class World extends Owned {
         memory.lend(arrays.map(({ array }) => array), (...places) => this.#view(request, visible, arrays, places));
         return visible;
     }
-    #view({ camera, matrix, depth = 'minusOneToOne', origin, volume, layers = ALL, occlusion, picture, limits, treeOrder, conservative },
-        visible, arrays, places) {
-        // From `at` on: the camera, 128 limits, 256 the matrix, 432 occlusion, 464 the picture, 496 the request.
-        const { memory } = this, at = memory.scratch(552), { words, doubles, floats } = memory;
+    #view({ camera, matrix, depth = 'minusOneToOne', origin, volume, layers = ALL, occlusion, picture, receivers, limits, treeOrder,
+        conservative }, visible, arrays, places) {
+        // From `at` on: the camera, 128 limits, 256 the matrix, 432 occlusion, 464 the picture, 496 the request, 552 the receivers.
+        const { memory } = this, at = memory.scratch(568), { words, doubles, floats } = memory;
         const request = at + 496, first = request >> 2, word = (name) => {
             if (!(name in DEPTH)) throw failure(1, `depth is one of ${Object.keys(DEPTH).join(', ')}`);
             return DEPTH[name];
@@ -248,6 +249,14 @@ export class World extends Owned {
             memory.fill('default_picture_view', place);
             words.set([width, height, word(range), samples], (place >> 2) + 1);
             words[first + 11] = place;
+        }
+        if (receivers) {
+            const { seen, radius = 1 } = receivers, place = at + 552;
+            if (!(seen instanceof ViewResult)) throw failure(1, 'receivers: `seen` is a ViewResult');
+            memory.fill('default_shadow_receivers', place);
+            words[(place >> 2) + 1] = seen.handle;
+            doubles[(place >> 3) + 1] = radius;
+            words[first + 12] = place;
         }
         words[first + 9] = conservative ? 1 : 0;
         words[first + 10] = treeOrder ? 1 : 0;

@@ -343,6 +343,28 @@ for (const build of BUILDS) {
         bad({ camera, limits: { eye: [0, 0] } }, 'invalid argument');
         bad({ camera, limits: { eye: [0, 0, 0], hysteresis: 0.5 } }, 'out of range');
     });
+    here('a light lists what throws a shadow on what the camera sees', () => {
+        const world = new crofton.World(), seen = new crofton.ViewResult(), casters = new crofton.ViewResult();
+        const cube = world.addMesh(CUBE.positions, CUBE.indices, { clusters: true });
+        const wall = world.add({ mesh: cube, transform: [5, 0, 0, 0, 0, 5, 0, 0, 0, 0, 0.5, 0, 0, 0, -10, 1] });
+        const front = world.add({ mesh: cube, transform: translation(0, 0, -6) }), behind = world.add({ mesh: cube, transform: translation(0, 0, -20) });
+        world.update();
+        const picture = { width: 160, height: 90 }, camera = {}, lamp = { position: [2, 0, 1] };
+        world.view({ camera, picture }, seen);
+        const request = { camera: lamp, picture, receivers: { seen, radius: 2 } };
+        assert.deepEqual([...world.view(request, casters).ids], [wall.index, front.index]);
+        assert.ok(casters.triangles.length > 0);
+        const bad = (asked, status, to = casters) => assert.throws(() => world.view(asked, to), refused(status));
+        bad(request, 'invalid argument', seen);
+        bad({ ...request, picture: undefined }, 'invalid argument');
+        bad({ ...request, receivers: { seen, radius: 0 } }, 'out of range');
+        bad({ ...request, receivers: {} }, 'invalid argument');
+        world.remove(behind);
+        bad(request, 'invalid argument');
+        world.update();
+        world.view({ camera, picture }, seen);
+        assert.deepEqual([...world.view(request, casters).ids], [wall.index, front.index]);
+    });
     here('occluders are found in a closed mesh', () => {
         const world = new crofton.World(), visible = new crofton.ViewResult(), cube = world.addMesh(CUBE.positions, CUBE.indices);
         world.findOccluders(cube);

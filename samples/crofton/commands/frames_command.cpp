@@ -50,7 +50,8 @@ struct FramesOptions {
     bool real_time = false;
     std::string occlusion, occlusion_size;  // empty: not said
     std::optional<std::uint32_t> occluders;
-    std::string baked;  // a file with the scene's occluders; empty: they are found
+    std::uint32_t shadow = 0;  // texels each way; 0: not wanted
+    std::string baked;         // a file with the scene's occluders; empty: they are found
     FramesOutput output;
     std::string report;  // a file of HTML; empty: not wanted
     std::string trace;   // a file of zones and counters; empty: not wanted
@@ -248,6 +249,10 @@ class FramesRun {
         if (!options_.occlusion.empty() && options_.occlusion != "depth" && options_.occlusion != "occluders")
             return fail(ErrorCode::invalid_argument, kNoItem,
                         "--occlusion: '" + options_.occlusion + "' is not one of depth, occluders");
+        if (options_.shadow != 0 && (by_occluders() || pipeline::holds_regions(options_.scene)))
+            return fail(ErrorCode::unsupported, kNoItem,
+                        "--shadow needs --occlusion depth, and a scene that is no folder of regions");
+        pipeline_options_.shadow_map = options_.shadow;
         if (by_occluders()) {
             const auto buffer = image_size_from(options_.occlusion_size.empty() ? "400x225" : options_.occlusion_size,
                                                 "--occlusion-size", 8, 4096);
@@ -438,6 +443,7 @@ constexpr const char* kFramesExamples =
     "  crofton frames                                     the built-in town, 120 frames around it\n"
     "  crofton frames town --camera street --verify       every frame checked by brute force\n"
     "  crofton frames town --camera street --occlude      without and with occlusion culling, side by side\n"
+    "  crofton frames town --camera street --occlude --shadow 2048   and what a shadow map needs\n"
     "  crofton frames town --instances 100000 --no-draw   a larger town, culled and collided only\n"
     "  crofton frames parts/ --camera street              a city composed from a folder of parts\n"
     "  crofton frames level.wad --map MAP01 --png out     a DOOM level, a picture per frame in out/\n"
@@ -495,6 +501,13 @@ void add_frames_command(CommandLine& line) {
     command
         .option("--occlusion-size", options->occlusion_size,
                 "Size of the occluders' buffer, WIDTHxHEIGHT, 8 to 4096; 400x225 by default")
+        .needs(occlude);
+    command
+        .option(
+            "--shadow", options->shadow,
+            "Also list what a sun's shadow map over the scene needs, SIZE x SIZE texels: the triangles whose shadows "
+            "the camera may see")
+        .whole_between(16, 16384)
         .needs(occlude);
     command.option("--tree", options->tree, "Axes of the tree's inner bounds: aligned, oriented or automatic")
         .show_default();

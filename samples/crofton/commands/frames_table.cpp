@@ -56,6 +56,15 @@ std::string means_with_occlusion(std::span<const FrameStatistics> frames) {
         mean_row("triangles that meet the frustum", " %9.0f", mean([](const auto& f) { return f.triangles_passed; }),
                  rest([](const auto& f) { return f.triangles_passed; }));
     const auto median = [&](auto value) { return median_of(frames, value); };
+    if (frames.front().shadow) {
+        text += mean_row("casters of the shadow map", " %9.1f", mean([](const auto& f) { return f.shadow->casters; }),
+                         mean([](const auto& f) { return f.shadow->casters_listed; }));
+        text +=
+            mean_row("triangles of the shadow map", " %9.0f", mean([](const auto& f) { return f.shadow->triangles; }),
+                     mean([](const auto& f) { return f.shadow->triangles_listed; }));
+        text += format("  %-33s %9s %9.3f\n", "ms to find casters, median", "",
+                       median([](const auto& f) { return 1e-3 * f.shadow->find_us; }));
+    }
     text += mean_row("ms to cull, median", " %9.3f", median([](const auto& f) { return 1e-3 * f.cull_us; }),
                      median([](const auto& f) { return 1e-3 * f.occlusion->occlude_us; }));
     if (frames.front().gpu)

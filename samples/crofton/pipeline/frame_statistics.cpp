@@ -47,6 +47,13 @@ bool has_occlusion(const FrameStatistics& f) {
             [](const FrameStatistics& f) { return f.regions.has_value(); }                                    \
     }
 
+#define CROFTON_SHADOW_COLUMN(field)                                                                        \
+    Column {                                                                                                \
+        "shadow_" #field,                                                                                   \
+            [](const FrameStatistics& f) { return f.shadow ? static_cast<double>(f.shadow->field) : 0.0; }, \
+            [](const FrameStatistics& f) { return f.shadow.has_value(); }                                   \
+    }
+
 constexpr std::array kColumns = {
     CROFTON_COLUMN(instances),
     CROFTON_COLUMN(visible),
@@ -113,6 +120,11 @@ constexpr std::array kOcclusionColumns = {
     CROFTON_OCCLUSION_GPU_COLUMN(samples_passed),
     CROFTON_OCCLUSION_COLUMN(occlude_us),
     CROFTON_OCCLUSION_COLUMN(draw_us),
+    CROFTON_SHADOW_COLUMN(casters),
+    CROFTON_SHADOW_COLUMN(triangles),
+    CROFTON_SHADOW_COLUMN(casters_listed),
+    CROFTON_SHADOW_COLUMN(triangles_listed),
+    CROFTON_SHADOW_COLUMN(find_us),
 };
 
 #undef CROFTON_OCCLUSION_COLUMN
@@ -121,6 +133,7 @@ constexpr std::array kOcclusionColumns = {
 #undef CROFTON_GPU_COLUMN
 #undef CROFTON_SEEN_COLUMN
 #undef CROFTON_REGIONS_COLUMN
+#undef CROFTON_SHADOW_COLUMN
 
 bool drawn(std::span<const FrameStatistics> frames) {
     return std::any_of(frames.begin(), frames.end(), [](const FrameStatistics& f) { return f.gpu.has_value(); });
@@ -206,6 +219,12 @@ Json to_json(const FrameStatistics& f, bool with_ids) {
                   {"collide_us", f.collide_us},
                   {"draw_us", f.draw_us},
                   {"occlusion", occlusion_json(f.occlusion, f.seen, with_ids)}};
+    if (f.shadow)
+        entry["shadow"] = {{"casters", f.shadow->casters},
+                           {"triangles", f.shadow->triangles},
+                           {"casters_listed", f.shadow->casters_listed},
+                           {"triangles_listed", f.shadow->triangles_listed},
+                           {"find_us", f.shadow->find_us}};
     if (f.regions)
         entry["regions"] = {{"attached", f.regions->attached},
                             {"came", f.regions->came},

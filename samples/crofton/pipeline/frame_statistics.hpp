@@ -33,6 +33,13 @@ struct OccludedFrame {
     std::vector<depth::VisibleCluster> clusters;  // by depth: the triangles to draw, of instances
 };
 
+// The shadow map of a sun, for what the camera sees by depth.
+struct ShadowFrame {
+    std::uint64_t casters = 0, triangles = 0;                // whose bounds meet the map, and all triangles of them
+    std::uint64_t casters_listed = 0, triangles_listed = 0;  // those that change a shadow on what is seen
+    double find_us = 0.0;                                    // to list them; in no other time
+};
+
 // What came and went before a frame of a world of regions.
 struct StreamedFrame {
     std::uint64_t attached = 0;  // regions, in this frame
@@ -70,6 +77,7 @@ struct FrameStatistics {
     std::vector<std::uint32_t> visible_ids;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> colliding_ids;
     std::optional<OccludedFrame> occlusion;
+    std::optional<ShadowFrame> shadow;
     std::optional<StreamedFrame> regions;
 };
 

@@ -5,8 +5,10 @@
 #include <array>
 #include <chrono>
 #include <crofton/cull/cull.hpp>
+#include <glm/geometric.hpp>
 #include <utility>
 
+#include "camera_path.hpp"
 #include "object_counts.hpp"
 
 namespace crofton::pipeline {
@@ -21,6 +23,20 @@ constexpr std::uint32_t kColliderLayer = 2;
 
 double microseconds_since(Clock::time_point start) {
     return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+}
+
+// Orthographic, around all of the box.
+Camera sun_over(const Aabb& box) {
+    const double reach = glm::length(box.half_extents());
+    Camera sun;
+    sun.projection = Projection::orthographic;
+    sun.forward = glm::normalize(glm::dvec3(0.5, -1.0, 0.3));
+    sun.height = 2.0 * reach;
+    sun.aspect = 1.0;
+    sun.position = box.center() - 2.0 * reach * sun.forward;
+    sun.near_distance = 0.01 * reach;
+    sun.far_distance = 4.0 * reach;
+    return sun;
 }
 
 }  // namespace
@@ -72,8 +88,11 @@ struct Pipeline::State {
     std::vector<scene::InstanceId> visible_ids;
     ObjectCounter counter;
     std::shared_ptr<const SceneClusters> clusters;
-    depth::DepthCuller depth_culler;
-    std::vector<depth::DepthObject> depth_objects;
+    depth::DepthCuller depth_culler, caster_culler;
+    std::vector<depth::DepthObject> depth_objects, casters, on_map;
+    std::vector<depth::DepthReceiver> receivers;
+    ViewResult of_sun;
+    std::optional<Camera> sun;
 
     State(const scene::Scene& the_scene, std::vector<scene::InstanceId> the_movers, const PipelineOptions& the_options,
           Executor& the_executor, std::shared_ptr<const SceneOccluders> the_occluders)
@@ -284,6 +303,27 @@ struct Pipeline::State {
         return {};
     }
 
+    // After find_triangles().
+    Result<void> find_casters(ShadowFrame& frame) {
+        if (!sun) sun = sun_over(focus_of(scene));
+        const auto start = Clock::now();
+        if (auto seen = world.view({.camera = *sun, .layers = kSeenLayer}, of_sun, executor); !seen) return seen;
+        casters.clear(), on_map.clear(), receivers.clear();
+        append_depth_objects(scene, *clusters, options.one_sided, of_sun.ids(), *sun, casters);
+        append_depth_objects(scene, *clusters, options.one_sided, visible_ids, *sun, on_map);
+        for (const depth::DepthObject& o : on_map) receivers.push_back({o.mesh, o.to_clip});
+        // Looked up by 3 x 3 bilinear comparisons.
+        const auto found = caster_culler.find_casters(casters, {options.shadow_map, options.shadow_map},
+                                                      {&depth_culler, receivers, 2.0f}, executor);
+        if (!found) return tl::unexpected(found.error());
+        frame.find_us = microseconds_since(start);
+        frame.casters = casters.size();
+        for (const depth::DepthObject& o : casters) frame.triangles += o.mesh->triangle_order().size();
+        frame.casters_listed = caster_culler.statistics().objects_listed;
+        frame.triangles_listed = caster_culler.statistics().triangles_listed;
+        return {};
+    }
+
     [[nodiscard]] std::uint64_t nodes_tested() const {
         return options.cull == CullMode::tree ? visible.statistics().nodes_tested : 0;
     }
@@ -370,6 +410,8 @@ Result<FrameStatistics> Pipeline::run(const Camera& camera) {
     if (s.options.picture) {
         if (auto found = s.find_triangles(camera, *frustum, frame.occlusion.emplace()); !found)
             return tl::unexpected(found.error());
+        if (s.options.shadow_map != 0)
+            if (auto found = s.find_casters(frame.shadow.emplace()); !found) return tl::unexpected(found.error());
     } else if (s.options.occlusion)
         if (auto found = s.find_not_hidden(camera, *frustum, frame.occlusion.emplace()); !found)
             return tl::unexpected(found.error());

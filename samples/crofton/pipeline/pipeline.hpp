@@ -36,6 +36,9 @@ struct PipelineOptions {
     // In place of `occlusion`: asks which triangles this picture needs, by the depth of those found before. Meshes are
     // cut into clusters when this is first set, unless they are given, and kept.
     std::optional<depth::PictureView> picture = {};
+    // With `picture`: also lists the casters of a sun's shadow map, of so many texels each way, over the scene. 0:
+    // none.
+    std::uint32_t shadow_map = 0;
     std::shared_ptr<const SceneClusters> clusters = {};  // of this scene; nullptr: not known
     std::span<const std::uint8_t> one_sided = {};        // by mesh, as DrawList::Looks; must live as long
     boxtree::Orientation tree = boxtree::Orientation::aligned;

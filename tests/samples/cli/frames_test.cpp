@@ -55,6 +55,9 @@ TEST_SUITE("cli/frames") {
             {"town --occluders 10", "occlude"},
             {"town --occlude --occlusion-size 4x90", "4x90"},
             {"town --occlude --occlusion boxes", "boxes"},
+            {"town --shadow 64", "occlude"},
+            {"town --occlude --shadow 8", "--shadow"},
+            {"town --occlude --occlusion occluders --shadow 64", "--shadow needs --occlusion depth"},
             {"town --occlude --occlusion depth --occluders 9", "need --occlusion occluders"},
         };
         for (const Case& wrong : cases) {
@@ -246,6 +249,24 @@ TEST_SUITE("cli/frames") {
         CHECK_FALSE(none["summary"].contains("passed_per_seen"));
         CHECK(run_cli(path + "--no-draw --json -").json()["frames"][0]["triangles_seen"].is_null());
         CHECK_FALSE(says(run_cli(path + "--no-seen --csv -").out, "seen"));
+    }
+
+    TEST_CASE("a shadow map needs few of its casters") {
+        const std::string path = kSmallTown + "--frames 3 --camera street --no-draw --occlude --shadow 256 ";
+        const json document = run_cli(path + "--json -").json();
+        for (const json& frame : document["frames"]) {
+            const json& shadow = frame["shadow"];
+            CHECK(shadow["casters_listed"].get<int>() > 0);
+            CHECK(shadow["casters_listed"].get<int>() <= shadow["casters"].get<int>());
+            CHECK(2 * shadow["triangles_listed"].get<int>() < shadow["triangles"].get<int>());
+            CHECK(shadow["find_us"].get<double>() > 0.0);
+        }
+        CHECK(document["summary"].contains("mean_shadow_triangles_listed"));
+        const json threads = run_cli(path + "--threads 2 --json -").json();
+        CHECK(threads["summary"]["mean_shadow_triangles_listed"] ==
+              document["summary"]["mean_shadow_triangles_listed"]);
+        CHECK(says(run_cli(path).out, "triangles of the shadow map"));
+        CHECK(says(run_cli(path + "--csv -").out, "shadow_casters,shadow_triangles,shadow_casters_listed"));
     }
 
     TEST_CASE("the table and the CSV hold both columns") {

@@ -238,26 +238,33 @@ ReceiverMask::PictureTriangle ReceiverMask::triangle_in_picture(const Piece& pie
     return t;
 }
 
-// True if a part seems to be outside the picture or hidden, by pixels at a distance of some sixteen. It decides what is
-// worth the time: a piece that is not split is marked as it is.
+// True if more than half of the piece seems to be outside the picture or hidden, by some of its pixels. It decides what
+// is worth the time: a piece that is not split is marked as it is.
 bool ReceiverMask::is_worth_splitting(const PictureTriangle& piece, const Projection& in_picture) const {
     if (!piece.before_eye || strips_.empty()) return true;
-    constexpr int kMost = 16;
-    const int steps =
-        std::clamp(std::max(in_picture.x1 - in_picture.x0, in_picture.y1 - in_picture.y0) / kFewPixels, 2, kMost);
+    constexpr int kDistance = 32, kMostSteps = 8;
+    const int size = std::max(in_picture.x1 - in_picture.x0, in_picture.y1 - in_picture.y0);
+    const int steps = std::clamp(size / kDistance, 2, kMostSteps), all = steps * (steps + 1) / 2;
     const glm::dvec3 &from = piece.corners[0], a = piece.corners[1] - from, b = piece.corners[2] - from;
     const double area = a.x * b.y - a.y * b.x;
     if (area == 0.0) return true;
     const double across = (a.z * b.y - a.y * b.z) / area, up = (a.x * b.z - a.z * b.x) / area;
     const auto width = static_cast<double>(picture_.tiles.width), height = static_cast<double>(picture_.tiles.height);
+    const auto is_lost = [&](double u, double v) {
+        const double x = from.x + u * a.x + v * b.x, y = from.y + u * a.y + v * b.y;
+        if (!(x >= 0.0 && x < width && y >= 0.0 && y < height)) return true;
+        const auto column = static_cast<std::uint32_t>(x), row = static_cast<std::uint32_t>(y);
+        // At the pixel's middle, so that a surface does not hide itself.
+        const double z = from.z + (column + 0.5 - from.x) * across + (row + 0.5 - from.y) * up;
+        return double{nearness(column, row)} > z;
+    };
+    int asked = 0, lost = 0;
     for (int i = 0; i < steps; ++i)
         for (int j = 0; i + j < steps; ++j) {
-            const double u = (i + 1.0 / 3.0) / steps, v = (j + 1.0 / 3.0) / steps;
-            const double x = from.x + u * a.x + v * b.x, y = from.y + u * a.y + v * b.y;
-            if (!(x >= 0.0 && x < width && y >= 0.0 && y < height)) return true;
-            const auto column = static_cast<std::uint32_t>(x), row = static_cast<std::uint32_t>(y);
-            const double z = from.z + (column + 0.5 - from.x) * across + (row + 0.5 - from.y) * up;
-            if (double{nearness(column, row)} > z) return true;
+            ++asked;
+            lost += is_lost((i + 1.0 / 3.0) / steps, (j + 1.0 / 3.0) / steps);
+            if (2 * lost > all) return true;
+            if (2 * (asked - lost) >= all) return false;
         }
     return false;
 }

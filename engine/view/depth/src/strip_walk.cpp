@@ -134,12 +134,4 @@ void StripWalk::count(std::uint64_t work, const Projection& box) {
     if (counts) work_->done.fetch_add(work, std::memory_order_relaxed);
 }
 
-float StripWalk::nearness(std::uint32_t x, std::uint32_t y) const {
-    const Tiles& tiles = picture_.tiles;
-    const std::size_t t = std::size_t{y / kTile} * tiles.columns + x / kTile;
-    const float floor = tiles.floors[t];
-    if (tiles.written[t] == 0) return floor;
-    return std::max(floor, tiles.pixels[t * kTilePixels + y % kTile * kTile + x % kTile]);
-}
-
 }  // namespace crofton::depth

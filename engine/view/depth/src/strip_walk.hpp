@@ -7,6 +7,7 @@
 // - What is hidden in a strip would not raise its tiles: a lower bound of its nearness is at most the upper one.
 // - Items come in the same order in each strip.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <crofton/core/memory.hpp>
@@ -49,7 +50,13 @@ class StripWalk {
     // True if all samples of the rectangle that lie in the strip are nearer.
     [[nodiscard]] bool hides(const Projection& projection) const { return is_hidden(picture_.tiles, projection); }
     // Of a pixel in the strip.
-    [[nodiscard]] float nearness(std::uint32_t x, std::uint32_t y) const;
+    [[nodiscard]] float nearness(std::uint32_t x, std::uint32_t y) const {
+        const Tiles& tiles = picture_.tiles;
+        const std::size_t t = std::size_t{y / kTile} * tiles.columns + x / kTile;
+        const float floor = tiles.floors[t];
+        if (tiles.written[t] == 0) return floor;
+        return std::max(floor, tiles.pixels[t * kTilePixels + y % kTile * kTile + x % kTile]);
+    }
 
   private:
     static constexpr std::uint32_t kEnd = ~std::uint32_t{0};
