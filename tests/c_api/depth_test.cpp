@@ -333,7 +333,12 @@ TEST_SUITE("capi/depth") {
                                                 &clusters, &count, nullptr) == CROFTON_BAD_HANDLE);
         CHECK(casters_of(camera_culler.get()) == CROFTON_OK);
         CHECK(casters_of(nullptr) == CROFTON_BAD_HANDLE);
-        CHECK(casters_of(light_culler.get()) != CROFTON_OK);
+        // With thread checks, too, which see the culler in use by this call.
+        for (const int on : {1, 0}) {
+            REQUIRE(crofton_set_thread_checks(on) == CROFTON_OK);
+            CHECK(casters_of(light_culler.get()) == CROFTON_INVALID_ARGUMENT);
+            CHECK(casters_of(camera_culler.get()) == CROFTON_OK);
+        }
         given.radius = kNaN;
         CHECK(casters_of(camera_culler.get()) == CROFTON_OUT_OF_RANGE);
         given.radius = 1.0;

@@ -68,6 +68,21 @@ pub struct PictureView {
 }
 
 /// What a camera sees, for the view of a light.
+///
+/// ```no_run
+/// # use crofton::*;
+/// # fn draw(_: VisibleCluster) {}
+/// # fn draw_shadows(world: &World, camera: Camera, sun: Camera) -> Result<()> {
+/// let size = |width, height| PictureView { width, height, depth: DepthRange::ReversedZeroToOne, samples: 1, work_limit: 0 };
+/// let (mut visible, mut casters) = (ViewResult::new()?, ViewResult::new()?); // kept from frame to frame
+/// let request = ViewRequest { picture: Some(size(1280, 720)), ..camera.into() };
+/// let seen = world.view(&request, &mut visible)?;
+/// let receivers = Some(ShadowReceivers { seen: &seen, radius: 2.0 });
+/// let request = ViewRequest { picture: Some(size(2048, 2048)), receivers, ..sun.into() };
+/// world.view(&request, &mut casters)?.triangles()?.iter().for_each(|&cluster| draw(cluster));
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Copy)]
 pub struct ShadowReceivers<'a> {
     /// The answer to the camera's view, which had a picture.

@@ -164,6 +164,9 @@ crofton_status crofton_depth_culler_find_casters(crofton_depth_culler* culler, c
     if (use.failed()) return use.status();
     crofton_depth_receivers given;
     CROFTON_CHECK(read_growing(receivers, __func__, given));
+    if (given.seen == culler)  // which this call has for itself
+        return report(CROFTON_INVALID_ARGUMENT, __func__,
+                      "depth: casters need another culler, whose last answer is what the camera sees");
     const SharedUse use_seen(given.seen, __func__);
     if (use_seen.failed()) return use_seen.status();
     CROFTON_CHECK(check_array(given.objects, given.object_count, __func__));

@@ -52,11 +52,15 @@ crofton_status read_camera(const crofton_camera* camera, const char* function, s
     return CROFTON_OK;
 }
 
-crofton_status read_receivers(const crofton_shadow_receivers* argument, const char* function,
-                              std::optional<ShadowReceivers>& result) {
+// `answer`: where that to the request goes.
+crofton_status read_receivers(const crofton_shadow_receivers* argument, const crofton_view_result& answer,
+                              const char* function, std::optional<ShadowReceivers>& result) {
     if (!argument) return CROFTON_OK;
     crofton_shadow_receivers given;
     CROFTON_CHECK(read_growing(argument, function, given));
+    if (given.seen == &answer)  // which this call has for itself
+        return report(CROFTON_INVALID_ARGUMENT, function,
+                      "view: a light's answer cannot replace that of its receivers");
     const SharedUse use(given.seen, function);
     if (use.failed()) return use.status();
     if (given.seen->of != crofton_view_result::Of::world)
@@ -110,8 +114,8 @@ crofton_status capi::read_picture(const crofton_picture_view* picture, const cha
     return CROFTON_OK;
 }
 
-crofton_status capi::read_request(const crofton_view_request& given, const char* function, ViewRequest& request,
-                                  cull::DrawLimits& limits) {
+crofton_status capi::read_request(const crofton_view_request& given, const crofton_view_result& answer,
+                                  const char* function, ViewRequest& request, cull::DrawLimits& limits) {
     CROFTON_CHECK(read_camera(given.camera, function, request.camera));
     CROFTON_CHECK(read_matrix(given.matrix, function, request.matrix));
     if (given.volume) {
@@ -121,7 +125,7 @@ crofton_status capi::read_request(const crofton_view_request& given, const char*
     request.layers = given.layers;
     CROFTON_CHECK(read_occlusion(given.occlusion, function, request.occlusion));
     if (given.picture) CROFTON_CHECK(read_picture(given.picture, function, request.picture.emplace()));
-    CROFTON_CHECK(read_receivers(given.receivers, function, request.receivers));
+    CROFTON_CHECK(read_receivers(given.receivers, answer, function, request.receivers));
     return read_options(given, function, request, limits);
 }
 

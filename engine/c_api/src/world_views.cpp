@@ -31,7 +31,7 @@ crofton_status view_one(const crofton_world& world, const crofton_view_request* 
     ViewRequest asked;
     cull::DrawLimits limits;
     CROFTON_CHECK(read_growing(request, function, given));
-    CROFTON_CHECK(read_request(given, function, asked, limits));
+    CROFTON_CHECK(read_request(given, result, function, asked, limits));
     CROFTON_CHECK(status_of(world.world.view(asked, result.one, executor), function));
     result.of = Of::world;
     result.is_counted = !asked.occlusion || asked.occlusion->list_occluded || asked.order == cull::ResultOrder::tree;
@@ -46,7 +46,7 @@ crofton_status view_many(const crofton_world& world, const crofton_view_request*
     for (std::size_t v = 0; v < count; ++v) {
         crofton_view_request given;
         CROFTON_CHECK(read_growing_at(requests, v, function, given));
-        CROFTON_CHECK(of_item(read_request(given, function, asked[v], limits[v]), v));
+        CROFTON_CHECK(of_item(read_request(given, result, function, asked[v], limits[v]), v));
         // Views with the same limits are answered in one walk.
         for (std::size_t w = 0; w < v && asked[v].limits == &limits[v]; ++w) {
             crofton_view_request earlier;

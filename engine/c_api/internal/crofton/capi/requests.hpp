@@ -10,9 +10,9 @@
 
 namespace crofton::capi {
 
-// A request of a World. `limits` is room for those of the request.
-[[nodiscard]] crofton_status read_request(const crofton_view_request& given, const char* function, ViewRequest& request,
-                                          cull::DrawLimits& limits);
+// A request of a World. `limits` is room for those of the request; `answer` is where the answer goes.
+[[nodiscard]] crofton_status read_request(const crofton_view_request& given, const crofton_view_result& answer,
+                                          const char* function, ViewRequest& request, cull::DrawLimits& limits);
 
 [[nodiscard]] crofton_status read_picture(const crofton_picture_view* picture, const char* function,
                                           depth::PictureView& view);
