@@ -290,14 +290,12 @@ int deepest_corner(const ContactPoint* points, int count) {
         depth = std::max(depth, points[i].depth);
     }
     middle *= 1.0 / static_cast<double>(count);
-    double squared[kMaxClipped + 1], most = 0.0;
-    for (int i = 0; i < count; ++i) {
+    const auto squared = [&](int i) {
         const glm::dvec3 way = (points[i].position - first) - middle;
-        squared[i] = glm::dot(way, way);
-        most = std::max(most, squared[i]);
-    }
-    const double least = depth - 1e-9 * std::sqrt(most);
-    return greatest(count, [&](int i) { return points[i].depth >= least ? squared[i] : -1.0; });
+        return glm::dot(way, way);
+    };
+    const double radius = std::sqrt(squared(greatest(count, squared)));
+    return greatest(count, [&](int i) { return points[i].depth >= depth - 1e-9 * radius ? squared(i) : -1.0; });
 }
 
 // The first points that are farthest along d and against it.
