@@ -294,10 +294,8 @@ int deepest_corner(const ContactPoint* points, int count) {
         const glm::dvec3 way = (points[i].position - first) - middle;
         return glm::dot(way, way);
     };
-    double most = 0.0;
-    for (int i = 0; i < count; ++i) most = std::max(most, squared(i));
-    const double least = depth - 1e-9 * std::sqrt(most);
-    return greatest(count, [&](int i) { return points[i].depth >= least ? squared(i) : -1.0; });
+    const double radius = std::sqrt(squared(greatest(count, squared)));
+    return greatest(count, [&](int i) { return points[i].depth >= depth - 1e-9 * radius ? squared(i) : -1.0; });
 }
 
 // The first points that are farthest along d and against it.
