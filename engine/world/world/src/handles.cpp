@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Whose handle is it? Generations tell one user of an index from the next, and one World from another.
+// Checks handles. Generations distinguish successive uses of an index, and one World from another.
 #include <atomic>
 
 #include "object_table.hpp"
