@@ -6,6 +6,7 @@
 #include <crofton/geometry/shapes.hpp>
 #include <oracle/exact_frustum.hpp>
 #include <oracle/near_misses.hpp>
+#include <oracle/sphere_verdict.hpp>
 
 namespace crofton::oracle {
 
@@ -65,72 +66,12 @@ inline cull::Verdict classify(const Frustum& frustum, const Aabb& box) {
     return is_feasible(rows) ? cull::Verdict::straddling : cull::Verdict::outside;
 }
 
-using Point = std::array<mpq_class, 3>;
-
-inline mpq_class dot(const Point& a, const Point& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-// Plane i as normal · x + offset for x relative to the sphere's centre.
-struct RationalPlane {
-    Point normal;
-    mpq_class offset;
-};
-
-inline std::vector<RationalPlane> planes_of(const Frustum& frustum, const Sphere& sphere) {
-    std::vector<RationalPlane> planes;
-    for (const Plane& plane : frustum.view())
-        planes.push_back(
-            {{mpq_class(plane.normal.x), mpq_class(plane.normal.y), mpq_class(plane.normal.z)},
-             plane_value(frustum, plane,
-                         {mpq_class(sphere.center.x), mpq_class(sphere.center.y), mpq_class(sphere.center.z)})});
-    return planes;
-}
-
 inline bool is_rejected_by_a_plane(const Frustum& frustum, const Sphere& sphere) {
-    for (const RationalPlane& plane : planes_of(frustum, sphere))
-        if (plane.offset < 0 && plane.offset * plane.offset > mpq_class(sphere.radius) * mpq_class(sphere.radius) *
-                                                                  dot(plane.normal, plane.normal))
-            return true;
-    return false;
+    return SphereVerdict<mpq_class>(frustum, sphere).is_rejected_by_a_plane();
 }
 
-// The nearest point of the volume is the centre, or its projection onto a face, an edge or a corner: all of them are
-// tried, by eliminating what lies along the planes chosen before (Gram, Schmidt).
 inline cull::Verdict classify(const Frustum& frustum, const Sphere& sphere) {
-    const std::vector<RationalPlane> planes = planes_of(frustum, sphere);
-    const mpq_class square = mpq_class(sphere.radius) * mpq_class(sphere.radius);
-    bool inside = true;
-    for (const RationalPlane& plane : planes)
-        inside = inside && plane.offset >= 0 && plane.offset * plane.offset >= square * dot(plane.normal, plane.normal);
-    if (inside) return cull::Verdict::inside;
-    bool reaches = false;
-    const auto try_point = [&](const Point& x) {
-        for (const RationalPlane& plane : planes)
-            if (dot(plane.normal, x) + plane.offset < 0) return;
-        reaches = reaches || dot(x, x) <= square;
-    };
-    const auto project = [&](const auto& self, const Point& x, std::vector<Point> basis, std::size_t first) -> void {
-        try_point(x);
-        if (basis.size() == 3) return;
-        for (std::size_t i = first; i < planes.size(); ++i) {
-            Point along = planes[i].normal;
-            for (const Point& b : basis) {
-                const mpq_class share = dot(planes[i].normal, b) / dot(b, b);
-                for (std::size_t j = 0; j < 3; ++j) along[j] -= share * b[j];
-            }
-            const mpq_class length = dot(along, along);
-            if (length == 0) continue;
-            const mpq_class step = -(dot(planes[i].normal, x) + planes[i].offset) / length;
-            Point moved = x;
-            for (std::size_t j = 0; j < 3; ++j) moved[j] += step * along[j];
-            std::vector<Point> extended = basis;
-            extended.push_back(along);
-            self(self, moved, extended, i + 1);
-        }
-    };
-    project(project, Point{0, 0, 0}, {}, 0);
-    return reaches ? cull::Verdict::straddling : cull::Verdict::outside;
+    return SphereVerdict<mpq_class>(frustum, sphere)();
 }
 
 }  // namespace crofton::oracle

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Random frusta, and boxes and triangles that barely meet them or barely do not.
+// Random frusta, and boxes that barely meet them or barely do not.
 #pragma once
+#include <array>
 #include <cmath>
 #include <crofton/geometry/box.hpp>
 #include <crofton/geometry/camera.hpp>
@@ -57,27 +58,33 @@ class NearMisses {
     // A box one of whose surface points lies a depth of ±[shallowest, deepest] from the frustum's surface, most often
     // outside.
     Obb box(const Frustum& frustum, double shallowest = 1e-16, double deepest = 1e-1) {
-        const auto corners = *frustum_corners(frustum);
-        Obb box;
         const glm::dvec3 axis = direction();
         const double angle = number(0.0, 6.2);
-        box.axes = glm::mat3(glm::mat3_cast(glm::dquat(std::cos(angle / 2), std::sin(angle / 2) * axis)));
-        if (index(8) == 0) box.axes = glm::mat3(1.0f);
+        const glm::mat3 axes(glm::mat3_cast(glm::dquat(std::cos(angle / 2), std::sin(angle / 2) * axis)));
+        return box_along(index(8) == 0 ? glm::mat3(1.0f) : axes, frustum, shallowest, deepest);
+    }
+    Obb box_along(const glm::mat3& axes, const Frustum& frustum, double shallowest, double deepest) {
+        const auto corners = *frustum_corners(frustum);
+        Obb box;
+        box.axes = axes;
         for (int k = 0; k < 3; ++k) box.half_extents[k] = index(10) ? float(std::exp(number(-4.0, 2.0))) : 0.0f;
         const glm::dvec3 target = surface_point(frustum, corners);
-        // The box lies beyond the target as seen from the frustum's middle, or to its side.
-        glm::dvec3 middle(0.0);
-        for (const glm::dvec3& corner : corners) middle += 0.125 * corner;
-        const glm::dvec3 outward =
-            glm::normalize(glm::normalize(target - frustum.origin - middle) + number(0.0, 1.0) * direction());
+        const glm::dvec3 away = outward(frustum, corners, target);
         glm::dvec3 t;
-        for (int k = 0; k < 3; ++k) t[k] = glm::dot(outward, glm::dvec3(box.axes[k])) > 0.0 ? -1.0 : 1.0;
+        for (int k = 0; k < 3; ++k) t[k] = glm::dot(away, glm::dvec3(box.axes[k])) > 0.0 ? -1.0 : 1.0;
         if (index(2)) t[int(index(3))] = number(-1, 1);
         glm::dvec3 center = target;
         for (int k = 0; k < 3; ++k) center -= t[k] * double(box.half_extents[k]) * glm::dvec3(box.axes[k]);
         const double depth = std::exp(number(std::log(shallowest), std::log(deepest)));
-        box.center = center + (index(2) ? depth : -depth) * outward;
+        box.center = center + (index(2) ? depth : -depth) * away;
         return box;
+    }
+
+    // Beyond the target as seen from the frustum's middle, or to its side.
+    glm::dvec3 outward(const Frustum& frustum, const std::array<glm::dvec3, 8>& corners, const glm::dvec3& target) {
+        glm::dvec3 middle(0.0);
+        for (const glm::dvec3& corner : corners) middle += 0.125 * corner;
+        return glm::normalize(glm::normalize(target - frustum.origin - middle) + number(0.0, 1.0) * direction());
     }
 
   private:

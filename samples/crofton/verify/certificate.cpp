@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "certificate.hpp"
 
-#include <oracle/frustum_rows.hpp>
+#include <oracle/sphere_verdict.hpp>
 
 #include "exact_numbers.hpp"
 
@@ -22,6 +22,12 @@ Proof prove(const Frustum& frustum, const Obb& box) {
 }
 Proof prove(const Frustum& frustum, const Aabb& box) {
     return prove_box(frustum, box);
+}
+
+Proof prove(const Frustum& frustum, const Sphere& sphere) {
+    const auto verdict =
+        oracle::decide_by<Dyadic>([&]<class Number>() { return oracle::SphereVerdict<Number>(frustum, sphere)(); });
+    return verdict == cull::Verdict::outside ? Proof::disjoint : Proof::meets;
 }
 
 }  // namespace crofton::cli

@@ -10,10 +10,8 @@ namespace crofton::cli {
 
 enum class Proof : std::uint8_t { meets, disjoint, none };
 
-// A common point, or a sum of half-spaces, with factors ≥ 0, that excludes the whole bound. Both are guessed in
-// floating point; whether they prove anything is decided exactly: of boxes by tests/oracle/feasible.hpp, of spheres by
-// integers of any length where an error bound does not allow floating point. Returns `none` if no guess proves
-// anything: for bounds that touch to within rounding.
+// By the oracles of the tests: tests/oracle/feasible.hpp for boxes, sphere_verdict.hpp for spheres. Returns `none` for
+// boxes that touch to within rounding.
 [[nodiscard]] Proof prove(const Frustum& frustum, const Obb& box);
 [[nodiscard]] Proof prove(const Frustum& frustum, const Aabb& box);
 [[nodiscard]] Proof prove(const Frustum& frustum, const Sphere& sphere);

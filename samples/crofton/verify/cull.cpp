@@ -5,9 +5,9 @@
 #include <crofton/cull/bound_set.hpp>
 #include <crofton/cull/cull.hpp>
 #include <cstdio>
+#include <oracle/near_misses.hpp>
 
 #include "certificate.hpp"
-#include "straddlers.hpp"
 #include "topics.hpp"
 
 namespace crofton::cli {
@@ -19,6 +19,39 @@ struct CullCounts {
     std::uint64_t meeting = 0, disjoint = 0, unproved = 0, false_culls = 0, false_accepts = 0,
                   false_culls_conservative = 0, disagreements = 0;
 };
+
+using oracle::NearMisses;
+
+// A proof is always found for boxes with a width.
+bool has_width(const Obb& box) {
+    return box.half_extents.x > 0.0f && box.half_extents.y > 0.0f && box.half_extents.z > 0.0f;
+}
+// Makes a bound that reaches 1 µm to 1 m across a point of the frustum's surface, inward or (one in two) short of it.
+void straddle(NearMisses& random, const Frustum& frustum, Obb& box) {
+    do box = random.box(frustum, 1e-6, 1.0);
+    while (!has_width(box));
+}
+void straddle(NearMisses& random, const Frustum& frustum, Aabb& box) {
+    Obb placed;
+    do placed = random.box_along(glm::mat3(1.0f), frustum, 1e-6, 1.0);
+    while (!has_width(placed));
+    box.min = placed.center - glm::dvec3(placed.half_extents);
+    box.max = placed.center + glm::dvec3(placed.half_extents);
+}
+void straddle(NearMisses& random, const Frustum& frustum, Sphere& sphere) {
+    const auto corners = *frustum_corners(frustum);
+    const glm::dvec3 target = random.surface_point(frustum, corners);
+    // In the cone of the outward normals there: what lies that way has `target` for its nearest point.
+    glm::dvec3 away(0.0);
+    for (const Plane& plane : frustum.view())
+        if (std::fabs(glm::dot(plane.normal, target - frustum.origin) + plane.offset) < 1e-8)
+            away -= random.number(0.0, 1.0) * plane.normal;
+    away = random.index(5) == 0 || glm::length(away) < 1e-6 ? random.outward(frustum, corners, target)
+                                                            : glm::normalize(away);
+    sphere.radius = std::exp(random.number(-4.0, 2.0));
+    const double depth = std::exp(random.number(std::log(1e-6), 0.0));
+    sphere.center = target + (sphere.radius + (random.index(2) != 0 ? depth : -depth)) * away;
+}
 
 // Only boxes have a tree; its verdicts where there is one.
 std::vector<cull::Verdict> tree_verdicts(const std::vector<Obb>& boxes, const cull::View& view) {
@@ -37,11 +70,10 @@ std::vector<cull::Verdict> tree_verdicts(const std::vector<Bound>&, const cull::
 // One view, many bounds: the list's vectors, alone and with a second view, the tree and the single test must agree, and
 // the proofs judge them.
 template <class Bound>
-void run_batch(Straddlers& straddlers, std::size_t count, CullCounts& counts) {
-    const auto frustum = frustum_of(straddlers.camera());
-    const auto corners = frustum_corners(*frustum);
+void run_batch(NearMisses& random, std::size_t count, CullCounts& counts) {
+    const auto frustum = frustum_of(random.camera());
     std::vector<Bound> bounds(count);
-    for (Bound& bound : bounds) straddlers.make(*frustum, *corners, bound);
+    for (Bound& bound : bounds) straddle(random, *frustum, bound);
     const cull::View view{*frustum};
     cull::BoundSet<Bound> set;
     set.assign(bounds);
@@ -49,7 +81,7 @@ void run_batch(Straddlers& straddlers, std::size_t count, CullCounts& counts) {
     cull::find_visible(set, bounds, view, exact);
     cull::find_visible(set, bounds, view, conservative, cull::CullMode::conservative);
     std::vector<std::uint32_t> masks(count);
-    const std::array<cull::View, 2> views{cull::View{*frustum_of(straddlers.camera())}, view};
+    const std::array<cull::View, 2> views{cull::View{*frustum_of(random.camera())}, view};
     (void)cull::find_visible(set, bounds, {}, views, masks);
     const std::vector<cull::Verdict> of_tree = tree_verdicts(bounds, view);
     for (std::size_t i = 0; i < count; ++i) {
@@ -77,10 +109,10 @@ void run_batch(Straddlers& straddlers, std::size_t count, CullCounts& counts) {
 
 template <class Bound>
 void add_rows(const char* kind, double offset, const VerifyOptions& options, std::vector<VerifyRow>& rows) {
-    Straddlers straddlers(options.seed, offset);
+    NearMisses random(options.seed, offset);
     CullCounts counts;
     for (std::uint64_t done = 0; done < options.trials; done += kBatch)
-        run_batch<Bound>(straddlers, static_cast<std::size_t>(std::min<std::uint64_t>(kBatch, options.trials - done)),
+        run_batch<Bound>(random, static_cast<std::size_t>(std::min<std::uint64_t>(kBatch, options.trials - done)),
                          counts);
     char where[64];
     std::snprintf(where, sizeof where, "at camera offset %g, 1 um to 1 m deep", offset);

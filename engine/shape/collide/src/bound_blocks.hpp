@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Axis-aligned bounds in blocks of sixteen and the implicit tree over them: what the broadphase's kernels share with
-// it.
+// Axis-aligned bounds in blocks of sixteen, and the implicit tree over them. The broadphase shares them with its
+// kernels.
 #pragma once
 #include <crofton/collide/box_block.hpp>
 #include <crofton/core/executor.hpp>

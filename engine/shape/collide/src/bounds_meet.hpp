@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Do the axis-aligned bounds of two boxes meet? Exactly.
+// Tests exactly whether the axis-aligned bounds of two boxes overlap.
 #pragma once
 #include <crofton/geometry/box.hpp>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How far apart two boxes are, or a box and a segment: GJK on their corners, with a proof of the answer. Where rounding
-// keeps it from one, the features near the answer are tried one by one.
+// The distance of two boxes, or of a box and a segment: GJK on their corners, with a proof of the answer. If rounding
+// prevents the proof, tries the features near the answer one by one.
 #include <algorithm>
 #include <cmath>
 #include <crofton/collide/bound_contacts.hpp>

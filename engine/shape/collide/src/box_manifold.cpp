@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where two boxes touch. Everything is reckoned about the centre of one of them.
+// Contact points of two boxes, computed relative to the centre of one of them.
 #include <algorithm>
 #include <cmath>
 #include <crofton/collide/bound_contacts.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The fifteen separating axes of two boxes in double: along which do they overlap least?
+// Finds the separating axis of two boxes along which they overlap least, among all fifteen, in double.
 #pragma once
 #include <cmath>
 #include <crofton/collide/bound_contacts.hpp>

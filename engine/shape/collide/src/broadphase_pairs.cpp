@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Lists of what an update has found, made when someone asks for them: an update's cost follows what has changed.
+// Lists of what an update found. They are made when they are read, so that an update's cost follows its changes.
 #include <algorithm>
 #include <iterator>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a broadphase keeps between updates. broadphase.cpp looks at all boxes, broadphase_movers.cpp at those that
-// moved, broadphase_pairs.cpp lists pairs for who asks.
+// The state that a broadphase keeps between updates. broadphase.cpp processes all boxes, broadphase_movers.cpp those
+// that moved, and broadphase_pairs.cpp makes the lists of pairs.
 #pragma once
 #include <crofton/collide/broadphase.hpp>
 #include <crofton/core/sorted_edits.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The answer for two boxes that float cannot tell apart, or need not be asked about.
+// Decides pairs of boxes that float cannot decide.
 #pragma once
 #include <crofton/collide/narrow_phase.hpp>
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Two boxes in float, in the layout of pair_columns.hpp: gaps along the fifteen axes.
+// Gaps of two boxes along the fifteen axes, in float, in the layout of pair_columns.hpp.
 #pragma once
 #include <crofton/geometry/box.hpp>
 #include <crofton/geometry/float_lanes.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The exact answer along a few axes, in integers, for boxes whose numbers are not too unlike in size.
+// Decides a few axes exactly, in integers, if the boxes' numbers are of similar magnitude.
 #pragma once
 #include <crofton/geometry/box.hpp>
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A tree over bounds that items come into, move in and leave one at a time.
+// A tree over bounds whose items are inserted, moved and removed one at a time.
 #pragma once
 #include <crofton/core/growing_vector.hpp>
 #include <crofton/core/memory.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A list that is made when someone asks for it.
+// A list that is built when it is first read.
 #pragma once
 #include <atomic>
 #include <crofton/core/memory.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The points of a manifold as they are gathered and thinned out.
+// Collects the points of a manifold and reduces them to the wanted number.
 #pragma once
 #include <crofton/collide/bound_contacts.hpp>
 

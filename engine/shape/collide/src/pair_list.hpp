@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Found pairs of items, turned into a sorted list.
+// Turns the pairs that were found into a sorted list.
 #pragma once
 #include <crofton/collide/broadphase.hpp>
 #include <crofton/core/memory.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Pairs of items, by item: what an item that moves has to do with.
+// Pairs of items, stored by item, so that the pairs of a moving item are at hand.
 #pragma once
 #include <hwy/cache_control.h>
 #include <crofton/collide/narrow_phase.hpp>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Shapes and rays against the sixteen children of a node, or the sixteen boxes of a leaf, of a BoxTree: filters that
-// lose nothing.
+// Filters that test shapes and rays against the sixteen children of a BoxTree node, or the sixteen boxes of a leaf.
+// They reject nothing that overlaps.
 #pragma once
 #include <crofton/boxtree/layout.hpp>
 #include <cstdint>

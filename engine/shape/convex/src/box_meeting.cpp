@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Whether boxes meet that are nearer to a touch than rounding tells.
+// Decides whether two boxes overlap if they are closer to touching than rounding can tell.
 #include <algorithm>
 #include <bit>
 #include <cmath>

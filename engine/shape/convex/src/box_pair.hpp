@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Two boxes, closely: along which of their fifteen axes do they overlap least, and where?
+// Finds the axis along which two boxes overlap least, among all fifteen, and where they touch.
 #pragma once
 #include <glm/gtc/type_ptr.hpp>
 #include <optional>

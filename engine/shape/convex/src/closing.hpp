@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How far two moving shapes come towards a plane between them.
+// Bounds how far two moving shapes approach a plane between them.
 #pragma once
 #include "core_query.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a cast begins in contact with, and what it passes while it slides along that.
+// The contacts in which a cast begins, and what the shape passes while it slides along them.
 #pragma once
 #include <array>
 #include <optional>

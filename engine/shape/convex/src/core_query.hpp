@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the queries share: the cores' distance or depth, exact where double is not enough.
+// Distance and depth of two cores, exact where double is not enough. All queries use it.
 #pragma once
 #include "epa.hpp"
 #include "gjk.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How deep a point or a segment lies in a solid core, in closed form.
+// The depth of a point or a segment in a solid core, in closed form.
 #pragma once
 #include "epa.hpp"
 

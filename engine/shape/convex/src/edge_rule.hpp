@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Surfaces' triangles near a shape, and the rule that keeps contacts off inner edges.
+// The triangles of surfaces near a shape, and the internal-edge rule for their contacts.
 #pragma once
 #include <span>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How deep two cores overlap, in double, with a bound on either side.
+// The depth of two overlapping cores, in double, with a bound on either side.
 #pragma once
 #include "simplex.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Do two polytopes meet, and which of their corners are nearest, in exact arithmetic.
+// Decides in exact arithmetic whether two polytopes overlap, and which of their corners are nearest.
 #pragma once
 #include "simplex.hpp"
 

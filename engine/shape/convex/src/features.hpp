@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The part of a shape's surface that looks along a direction: a polygon, a segment or a point, with ids.
+// Finds the part of a shape's surface that faces a direction: a polygon, a segment or a point, with ids.
 #pragma once
 #include <crofton/convex/query.hpp>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// From a touch to contact points: the patches of both shapes along the normal, clipped against each other.
+// Makes contact points from a touch: clips the patches of both shapes along the normal against each other.
 #pragma once
 #include "touch.hpp"
 

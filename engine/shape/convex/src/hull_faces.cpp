@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Triangles of a hull to faces, and the edges between faces.
+// Joins the triangles of a hull to faces, and finds the edges between faces.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Contact points gathered by direction, from which manifolds are made at the end.
+// Collects contact points by direction and makes manifolds of them.
 #pragma once
 #include "clip.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Shapes and contacts as lines, for whoever draws them.
+// Shapes and contacts as lines, for debug drawing.
 #include <algorithm>
 #include <crofton/convex/query.hpp>
 #include <crofton/geometry/trigonometry.hpp>

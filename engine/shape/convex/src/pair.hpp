@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Two placed shapes, and the corners of their difference body { p − q : p in a, q in b }.
+// Two shapes at their poses, and the corners of their difference body { p − q : p in a, q in b }.
 #pragma once
 #include <crofton/convex/query.hpp>
 

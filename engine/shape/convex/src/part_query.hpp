@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Shapes of parts against any shape. Here a has parts.
+// Queries of shapes with parts against any shape. Here a has parts.
 #pragma once
 #include "parts.hpp"
 

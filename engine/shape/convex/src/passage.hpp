@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// When a convex shape that moves along a line may come to what is near its way: bounds from below.
+// Lower bounds for the time at which a convex shape that moves along a line reaches what is near its path.
 #pragma once
 #include "parts.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rays at shapes: brought near the shape, in its own frame, and met there.
+// Rays against shapes: moves the ray's origin near the shape, transforms it to the shape's frame, and intersects there.
 #pragma once
 #include <crofton/convex/query.hpp>
 #include <crofton/geometry/shapes.hpp>

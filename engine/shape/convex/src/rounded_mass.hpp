@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Mass of rounded shapes: the core, and what lies within the radius of its faces, edges and corners (Steiner 1840).
+// Mass of rounded shapes: the core, and all points within the radius of its faces, edges and corners (Steiner 1840).
 #pragma once
 #include <crofton/convex/shape.hpp>
 

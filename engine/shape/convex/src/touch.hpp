@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Along which direction, how deep and where two shapes touch: what a manifold starts from.
+// The direction, depth and place in which two shapes touch. Manifolds start from it.
 #pragma once
 #include "clip.hpp"
 #include "simplex.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where a triangle of a surface touches a box, a sphere or a capsule: in closed form, proven as found.
+// The touch of a surface's triangle with a box, a sphere or a capsule, in closed form, with a proof.
 #pragma once
 #include "touch.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Contacts of shapes of convex parts that lie flush or overlap: with the normals of the union.
+// Contacts of shapes whose convex parts are flush or overlap: gives them the normals of the union.
 #pragma once
 #include <crofton/convex/push_out_of_union.hpp>
 #include <crofton/core/executor.hpp>

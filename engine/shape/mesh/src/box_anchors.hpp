@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How the boxes of a mesh tree follow their vertices.
+// Lets the boxes of a mesh tree follow their vertices.
 #pragma once
 #include <crofton/mesh/mesh_layout.hpp>
 #include <cstdint>

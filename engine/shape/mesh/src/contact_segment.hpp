@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The common segment of two triangles of which it is known which edges pass through which.
+// Computes the common segment of two triangles if it is known which edges pass through which triangle.
 #pragma once
 #include <crofton/mesh/mesh_query.hpp>
 #include <cstdint>

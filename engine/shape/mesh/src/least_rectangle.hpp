@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which of sixteen turned rectangles around points is the smallest: what the kernel shares with the code around it.
+// Finds the smallest of sixteen rotated rectangles around points: shared by the kernel and its callers.
 #pragma once
 #include <cstddef>
 

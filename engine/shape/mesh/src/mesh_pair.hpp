@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the SIMD traversals of a pair of mesh trees share with the exact code around them.
+// Data that the SIMD traversals of two mesh trees share with the exact code around them.
 #pragma once
 #include <crofton/core/executor.hpp>
 #include <crofton/mesh/mesh_layout.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The connected pieces of a mesh, and which of them are closed.
+// Finds the connected pieces of a mesh, and which of them are closed.
 #pragma once
 #include <crofton/core/memory.hpp>
 #include <crofton/geometry/mesh.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One box against a mesh tree, compiled for each instruction set and chosen at run time.
+// Tests one box against a mesh tree, compiled for each instruction set and chosen at run time.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "near_triangles.cpp"
 #include <hwy/foreach_target.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Puts a few hundred pairs of triangles in order.
+// Sorts a few hundred pairs of triangles.
 #pragma once
 #include <crofton/mesh/mesh_query.hpp>
 #include <span>

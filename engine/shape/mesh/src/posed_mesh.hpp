@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A mesh tree's triangles as the exact tests see them.
+// The triangles of a mesh tree at a pose, as the exact tests use them.
 #pragma once
 #include <crofton/geometry/shapes.hpp>
 #include <crofton/mesh/mesh_parts.hpp>

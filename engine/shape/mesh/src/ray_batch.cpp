@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Many rays at one mesh, sixteen at a time.
+// Tests many rays against one mesh, sixteen at a time.
 #include <algorithm>
 #include <cmath>
 #include <crofton/mesh/mesh_parts.hpp>

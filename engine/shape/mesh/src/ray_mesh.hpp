@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the SIMD traversal of a ray shares with the exact code around it.
+// Data that the SIMD traversal of a ray shares with the exact code around it.
 #pragma once
 #include <crofton/core/executor.hpp>
 #include <crofton/mesh/mesh_layout.hpp>

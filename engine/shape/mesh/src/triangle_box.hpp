@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One triangle in place of the box of its leaf.
+// Uses one triangle in place of the box of its leaf.
 #pragma once
 #include <crofton/mesh/mesh_layout.hpp>
 

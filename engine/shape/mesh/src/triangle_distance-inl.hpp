@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How far apart are eight pairs of triangles that do not meet? Included once per instruction set.
+// Distances of eight pairs of triangles that do not overlap. Included once per instruction set.
 #if defined(CROFTON_COLLIDE_TRIANGLE_DISTANCE) == defined(HWY_TARGET_TOGGLE)
 #ifdef CROFTON_COLLIDE_TRIANGLE_DISTANCE
 #undef CROFTON_COLLIDE_TRIANGLE_DISTANCE

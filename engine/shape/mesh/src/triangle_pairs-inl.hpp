@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Eight pairs of triangles side by side, in a's frame and in double: do they meet? Included once per instruction set.
+// Tests eight pairs of triangles for overlap, in a's frame and in double. Included once per instruction set.
 #if defined(CROFTON_COLLIDE_TRIANGLE_PAIRS) == defined(HWY_TARGET_TOGGLE)
 #ifdef CROFTON_COLLIDE_TRIANGLE_PAIRS
 #undef CROFTON_COLLIDE_TRIANGLE_PAIRS

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which triangles of a cluster meet along an edge.
+// Finds which triangles of a cluster share an edge.
 #pragma once
 #include <array>
 #include <crofton/depth/clustered_mesh.hpp>

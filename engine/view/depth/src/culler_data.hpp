@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the depth culler and its kernels share.
+// Data that the depth culler shares with its kernels.
 #pragma once
 #include <crofton/depth/clustered_mesh.hpp>
 #include <crofton/depth/depth_culler.hpp>

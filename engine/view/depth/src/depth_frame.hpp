@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What all threads that find a picture's triangles read.
+// Data that all threads read while they find a picture's triangles.
 #pragma once
 #include <array>
 #include <crofton/core/executor.hpp>

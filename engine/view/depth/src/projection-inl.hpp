@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where the boxes of objects and clusters lie in the picture, eight at a time. Compiled once per instruction set
+// Projects the boxes of objects and clusters into the picture, eight at a time. Compiled once per instruction set
 // (Highway).
 #include <hwy/highway.h>
 #include <algorithm>

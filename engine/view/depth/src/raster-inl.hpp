@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// One triangle against the tiles: may it own a sample, and which samples does it surely cover? Compiled once per
-// instruction set (Highway).
+// Tests one triangle against the tiles, and finds the samples that it surely covers. Compiled once per instruction set
+// (Highway).
 #include <hwy/highway.h>
 #include <algorithm>
 #include <bit>

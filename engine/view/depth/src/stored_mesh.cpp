@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Clusters as bytes, for files.
+// Serialises clusters, for files.
 #include <algorithm>
 #include <array>
 #include <cmath>

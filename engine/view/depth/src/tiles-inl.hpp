@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The nearness of a picture in tiles of 8 × 8 pixels: asked for rectangles. Compiled once per instruction set
-// (Highway).
+// The nearness of a picture in tiles of 8 × 8 pixels, and tests of rectangles against it. Compiled once per instruction
+// set (Highway).
 #include <hwy/highway.h>
 #include <algorithm>
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A set of small integers that is walked in ascending order.
+// A set of small integers that can be visited in ascending order.
 #pragma once
 #include <algorithm>
 #include <bit>

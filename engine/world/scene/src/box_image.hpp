@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the two ways to compute a transformed box share: transformed_box.cpp for one box, box_kernel.cpp for many. Both
-// take the same steps in the same order, so that they give the same bits.
+// The steps that transformed_box.cpp (one box) and box_kernel.cpp (many) share. Both take them in the same order, so
+// that they give the same bits.
 #pragma once
 
 namespace crofton::scene {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Boxes of many instances at once.
+// Computes the boxes of many instances at once.
 #pragma once
 #include <cstddef>
 

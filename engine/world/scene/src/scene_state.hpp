@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a scene keeps.
+// The state of a Scene.
 #pragma once
 #include <crofton/scene/scene.hpp>
 #include <optional>

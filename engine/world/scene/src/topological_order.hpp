@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Nodes in an order in which parents come before their children, kept under changes.
+// Keeps nodes in an order in which parents come before their children, while the graph changes.
 #pragma once
 #include <algorithm>
 #include <crofton/scene/scene.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Memory for many short arrays that come and go.
+// Memory for many short arrays that are allocated and freed often.
 #pragma once
 #include <algorithm>
 #include <bit>

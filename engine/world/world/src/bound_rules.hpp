@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which bounds an object may have.
+// Checks which bounds an object may have.
 #pragma once
 #include <cmath>
 #include <crofton/core/error.hpp>

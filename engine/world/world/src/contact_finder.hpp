@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which objects meet, and where: all pairs of boxes, then each pair's own shapes.
+// Finds the objects that touch, and where: first all pairs of boxes, then the shapes of each pair.
 #pragma once
 #include <crofton/collide/broadphase.hpp>
 #include <crofton/core/growing_vector.hpp>

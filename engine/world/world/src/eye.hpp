@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a request of a view comes to.
+// What a view request is resolved to before the query.
 #pragma once
 #include <crofton/cull/cull.hpp>
 #include <crofton/occlude/occlusion.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What calls for many handles share.
+// Code that calls with many handles share.
 #pragma once
 #include <crofton/world/inputs.hpp>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Nodes and meshes.
+// World's nodes and meshes.
 #include <algorithm>
 #include <cstring>
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Objects whose shapes have no bounds: what meets them, beside what the broadphase finds.
+// Objects whose shapes are infinite: finds what touches them, in addition to the broadphase.
 #pragma once
 #include <crofton/collide/narrow_phase.hpp>
 #include <crofton/convex/query.hpp>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Whose handle is it, and of when is an answer? Generations tell one user of an index from the next, and one World from
-// another.
+// Checks handles, and numbers the states of Worlds. Generations distinguish successive uses of an index, and one World
+// from another.
 #include <atomic>
 
 #include "object_table.hpp"

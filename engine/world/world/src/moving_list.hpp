@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The objects that move: their boxes of the last update, and a second array of those that the next one brings.
+// The list of moving objects: their boxes as of the last update, and a second array for the next one.
 #pragma once
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/core/memory.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Shapes of objects: where they stand, and the boxes that cover them.
+// The shapes of objects: their poses, and the boxes that contain them.
 #pragma once
 #include <crofton/convex/query.hpp>
 #include <crofton/scene/scene.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a World knows of its objects beside their boxes. Indices are the spatial index's.
+// The data of a World's objects except their boxes. Indices are those of the spatial index.
 #pragma once
 #include <crofton/core/error.hpp>
 #include <crofton/core/growing_vector.hpp>

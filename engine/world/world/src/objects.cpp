@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Objects: adding, changing, removing.
+// World's objects: adding, changing and removing them.
 #include <algorithm>
 #include <cmath>
 #include <string>

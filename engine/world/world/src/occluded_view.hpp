@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a view keeps of what is hidden in it: a depth buffer, the occluders that were drawn, and what was found; or a
-// picture's triangles.
+// A view's data about hidden objects: a depth buffer, the drawn occluders and the results; or a picture's
+// triangles.
 #pragma once
 #include <crofton/occlude/occlusion.hpp>
 #include <crofton/world/answers.hpp>

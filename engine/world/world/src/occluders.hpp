@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What of a World's objects hides other things: the occluders of meshes, placed with each object.
+// The occluders of a World's meshes, placed for each object.
 #pragma once
 #include <crofton/core/memory.hpp>
 #include <crofton/occlude/occlusion.hpp>

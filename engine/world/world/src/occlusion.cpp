@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which occluders there are, and which hide an object.
+// Finds, sets and lists occluders, and names those that hide an object.
 #include <crofton/boxtree/structure.hpp>
 #include <crofton/core/error.hpp>
 #include <crofton/cull/classify.hpp>

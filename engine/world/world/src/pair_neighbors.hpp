@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Of a pair of objects that meet: which others lie beside either where they do.
+// Finds the objects that lie beside a pair of touching objects, at the place where they touch.
 #pragma once
 #include <crofton/geometry/box.hpp>
 #include <crofton/geometry/transform.hpp>

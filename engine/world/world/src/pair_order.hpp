@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Pairs of objects in order, as lists of contacts have them.
+// The order of pairs in lists of contacts.
 #pragma once
 #include <crofton/world/answers.hpp>
 #include <cstddef>

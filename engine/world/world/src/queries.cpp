@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is asked between updates.
+// World's queries between updates.
 #include <algorithm>
 #include <cmath>
 #include <crofton/collide/bound_contacts.hpp>

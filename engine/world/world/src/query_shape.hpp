@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The shapes that queries ask with, and ask.
+// The shapes of queries, and the shapes of objects that they are tested against.
 #pragma once
 #include <algorithm>
 #include <crofton/collide/narrow_phase.hpp>

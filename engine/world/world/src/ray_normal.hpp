@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Normals of what rays hit: unit, to the side that the ray comes from. 0 where it began inside.
+// Normals of ray hits: unit length, towards the ray's origin; 0 if the ray began inside.
 #pragma once
 #include <crofton/geometry/box.hpp>
 #include <crofton/geometry/shapes.hpp>

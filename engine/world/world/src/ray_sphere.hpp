@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where a ray enters a sphere.
+// Intersects a ray with a sphere.
 #pragma once
 #include <cmath>
 #include <crofton/geometry/shapes.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Regions: what is done away from the game's thread.
+// Prepares regions, on any thread.
 #include <crofton/world/region.hpp>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What copies of a Region share.
+// The data that copies of a Region share.
 #pragma once
 #include <atomic>
 #include <crofton/boxtree/box_tree.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Occluders of regions' objects, which come and go in small parts.
+// Places and removes the occluders of regions' objects, a few in each update.
 #include <algorithm>
 #include <crofton/core/recovery.hpp>
 

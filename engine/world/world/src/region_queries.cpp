@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is asked of attached regions: first the tree of regions, then the trees of those that may answer.
+// Queries of attached regions: searches the tree of regions first, then the trees of those that may answer.
 #include <algorithm>
 #include <bit>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Objects of a region that are more than bounds, while the region is prepared.
+// Objects with meshes and shapes of a region that is being prepared.
 #pragma once
 #include <crofton/core/stop_signal.hpp>
 #include <crofton/world/world.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A view's answer in a World with regions: of its own objects and of theirs.
+// A view's result in a World with regions: the World's own objects and those of regions.
 #pragma once
 #include <algorithm>
 #include <crofton/cull/cull.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Views of a World that regions are attached to: its own objects', then the regions'.
+// Views of a World with attached regions: first its own objects, then those of regions.
 #include <algorithm>
 
 #include "eye.hpp"

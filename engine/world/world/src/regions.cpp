@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Attaching and detaching; handles of regions' objects.
+// Attaches and detaches regions, and resolves handles of their objects.
 #include "regions.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where shapes of objects touch from update to update.
+// Contacts between shapes, kept from update to update.
 #pragma once
 #include <crofton/convex/push_out_of_union.hpp>
 #include <crofton/core/sorted_edits.hpp>

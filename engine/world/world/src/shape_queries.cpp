@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Any shape against all objects.
+// Queries of all objects with any shape.
 #include <algorithm>
 #include <array>
 #include <cmath>

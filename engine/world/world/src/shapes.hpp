@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Objects as meshes: the trees over triangles that rays and contacts ask.
+// The meshes of objects: trees over triangles for rays and contacts.
 #pragma once
 #include <crofton/convex/shape.hpp>
 #include <crofton/geometry/shapes.hpp>

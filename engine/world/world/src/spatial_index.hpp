@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The boxes of a World's objects: a tree of those that rest, a list of those that move. It finds out which is which.
+// The boxes of a World's objects: a tree of those at rest and a list of those that move. Detects which is which.
 #pragma once
 #include <algorithm>
 #include <atomic>

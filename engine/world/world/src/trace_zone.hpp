@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Tells the host's profiler what runs.
+// Reports zones to the host's profiler.
 #pragma once
 #include <crofton/world/world.hpp>
 

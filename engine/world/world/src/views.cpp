@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What one view or many see: checks a request, then asks the tree, with or without occlusion.
+// Views: checks the requests, then queries the tree, with or without occlusion.
 #include <algorithm>
 #include <array>
 #include <bit>

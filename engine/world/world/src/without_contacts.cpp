@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// In place of contact_finder.cpp and shape_contacts.cpp where CROFTON_CONTACTS is off: a World that views and casts
-// rays, in less code. To ask it for pairs is an error.
+// Replaces contact_finder.cpp and shape_contacts.cpp if CROFTON_CONTACTS is off: a smaller World with views and rays.
+// Asking it for pairs is an error.
 #include "contact_finder.hpp"
 #include "region_pairs.hpp"
 #include "shape_contacts.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a World keeps.
+// The state of a World.
 #pragma once
 #include <crofton/collide/bound_contacts.hpp>
 #include <crofton/collide/broadphase.hpp>

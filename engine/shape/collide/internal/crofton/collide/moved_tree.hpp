@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A ray at trees whose boxes are stored relative to an origin.
+// Tests a ray against trees whose boxes are stored relative to an origin.
 #pragma once
 #include <crofton/boxtree/tree_arrays.hpp>
 #include <crofton/collide/broadphase.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which of many boxes that all move may a ray or a shape meet?
+// A tree over boxes that all move: finds those that a ray or a shape may meet.
 #pragma once
 #include <crofton/core/memory.hpp>
 #include <crofton/geometry/box.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// contact_manifolds() beside other shapes, for many pairs of shapes of which many are beside each other.
+// contact_manifolds() with neighbours, for many pairs of shapes that are often neighbours of each other.
 #pragma once
 #include <crofton/convex/query.hpp>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Makes shapes from numbers that are known to be good, without checks and without rounding to float.
+// Makes shapes from numbers that are known to be valid, without checks and without rounding to float.
 #pragma once
 #include <crofton/convex/shape.hpp>
 #include <glm/mat3x3.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Whether a cast begins as a slide, and what it lands on.
+// Tells whether a cast begins as a slide, and what it lands on.
 #pragma once
 #include <crofton/convex/query.hpp>
 #include <optional>

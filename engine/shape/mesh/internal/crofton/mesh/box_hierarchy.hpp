@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A hierarchy of aligned boxes, eight to a node, over items that have such boxes: for rays and lines.
+// A hierarchy of aligned boxes, eight to a node, over items with aligned boxes: for rays and lines.
 #pragma once
 #include <crofton/core/memory.hpp>
 #include <crofton/mesh/mesh_layout.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How a mesh tree lies in memory: plain arrays, which kernel files may read without any other header.
+// The memory layout of a mesh tree: plain arrays, which kernel files may read without any other header.
 #pragma once
 #include <crofton/core/version.hpp>
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The parts of a mesh tree: nodes and leaves that queries read, and what a refit needs.
+// The parts of a mesh tree: the nodes and leaves that queries read, and the data for a refit.
 #pragma once
 #include <crofton/core/memory.hpp>
 #include <crofton/geometry/box.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The triangles of a mesh that may be near a box or a point, or above a point, by the mesh's tree.
+// Finds the triangles of a mesh that may be near a box or a point, or above a point, by the mesh's tree.
 #pragma once
 #include <crofton/core/executor.hpp>
 #include <crofton/mesh/mesh_layout.hpp>

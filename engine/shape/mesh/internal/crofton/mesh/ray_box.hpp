@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A ray against a box, both known to be valid.
+// Intersects a ray with a box; both are known to be valid.
 #pragma once
 #include <crofton/mesh/mesh_query.hpp>
 #include <optional>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The triangles of a mesh that a moving box comes to.
+// Finds the triangles of a mesh that a moving box reaches.
 #pragma once
 #include <crofton/mesh/near_triangles.hpp>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The box of a transformed box.
+// Computes the box around a transformed box.
 #pragma once
 #include <crofton/core/error.hpp>
 #include <crofton/geometry/box.hpp>

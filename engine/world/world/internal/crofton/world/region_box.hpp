@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The boxes of a region's objects that are more than bounds.
+// Computes the boxes of a region's objects that have a mesh or a shape.
 #pragma once
 #include <crofton/geometry/box.hpp>
 #include <glm/vec3.hpp>
