@@ -17,17 +17,18 @@ constexpr std::array<std::string_view, 5> kRead = {"KHR_mesh_quantization", "EXT
                                                    "KHR_materials_emissive_strength"};
 
 // The parts of names, after the vendor's prefix, that stand for appearance only.
-constexpr std::array<std::string_view, 4> kAnyAppearance = {"texture_", "materials_", "lights_", "xmp"};
+constexpr std::array<std::string_view, 10> kAnyAppearance = {"texture_",        "materials_", "lights_",    "image_",
+                                                             "lightmap",        "audio",      "animation_", "media",
+                                                             "temporal_light_", "xmp"};
 // Beginnings of names.
-constexpr std::array<std::string_view, 26> kAppearance = {
-    "KHR_technique", "KHR_environment_map", "MOZ_lightmap",
+constexpr std::array<std::string_view, 24> kAppearance = {
+    "KHR_technique", "KHR_environment_map",
     // what vertices, faces and instances mean, and which edges are drawn as lines
     "EXT_mesh_features", "EXT_instance_features", "EXT_feature_metadata", "EXT_structural_metadata",
     "EXT_mesh_manifold", "EXT_mesh_primitive_edge_visibility", "CESIUM_primitive_outline", "FB_",
     // metadata and behaviour; coarser levels of detail (MSFT_lod) are no children of the node that is shown
-    "KHR_audio", "KHR_animation_", "KHR_interactivity", "KHR_physics_", "KHR_implicit_shapes", "KHR_collision_shapes",
-    "KHR_node_hoverability", "KHR_node_selectability", "AGI_", "VRM", "OMI_", "MSFT_", "MOZ_hubs_", "GODOT_",
-    "GRIFFEL_"};
+    "KHR_interactivity", "KHR_physics_", "KHR_implicit_shapes", "KHR_collision_shapes", "KHR_node_hoverability",
+    "KHR_node_selectability", "AGI_", "VRM", "OMI_", "MSFT_", "MOZ_hubs_", "GODOT_", "GRIFFEL_", "NEEDLE_components"};
 
 bool begins_with(std::string_view text, std::string_view with) {
     return text.substr(0, with.size()) == with;
