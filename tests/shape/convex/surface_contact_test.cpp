@@ -2,7 +2,9 @@
 #include <doctest/doctest.h>
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <set>
+#include <vector>
 
 #include "flat_floors.hpp"
 
@@ -23,6 +25,72 @@ void turn_some_over(RandomShapes& random, Surface& s) {
     for (std::size_t t = 0; t < s.mesh.indices.size(); t += 3)
         if (random.index(one_in) == 0) std::swap(s.mesh.indices[t], s.mesh.indices[t + 1]);
     s.build();
+}
+
+// Which triangles of a surface a ball touches by the rule for inner edges, told one by one.
+struct BallContact {
+    std::uint32_t triangle;
+    double depth;
+    glm::dvec3 normal;
+};
+glm::dvec3 nearest_on_triangle(const std::array<glm::dvec3, 3>& t, const glm::dvec3& q) {
+    const glm::dvec3 n = glm::cross(t[1] - t[0], t[2] - t[0]);
+    bool inside = true;
+    glm::dvec3 best(0.0);
+    double least = HUGE_VAL;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const glm::dvec3 &p = t[k], edge = t[(k + 1) % 3] - p;
+        inside = inside && glm::dot(glm::cross(edge, q - p), n) >= 0.0;
+        const glm::dvec3 on = p + std::clamp(glm::dot(q - p, edge) / glm::dot(edge, edge), 0.0, 1.0) * edge;
+        if (glm::distance(on, q) < least) least = glm::distance(on, q), best = on;
+    }
+    return inside ? q - glm::dot(q - t[0], n) / glm::dot(n, n) * n : best;
+}
+// Nothing where an angle or a distance is too close to a limit to say.
+std::optional<std::vector<BallContact>> ball_contacts(const Surface& s, const glm::dvec3& center, double radius,
+                                                      double margin) {
+    const auto corners = [&](std::size_t i) {
+        const Shape t = s.triangle(i);
+        return std::array<glm::dvec3, 3>{t.vertex(0), t.vertex(1), t.vertex(2)};
+    };
+    bool is_close = false;
+    const auto exceeds = [&](double value, double limit) {
+        is_close = is_close || std::abs(value - limit) <= 1e-6 * limit;
+        return value > limit;
+    };
+    std::vector<BallContact> result;
+    for (std::size_t i = 0; i < s.size(); ++i) {
+        const auto own = corners(i);
+        const glm::dvec3 on = nearest_on_triangle(own, center), way = center - on;
+        const double distance = glm::length(way);
+        if (exceeds(distance, radius + margin)) continue;
+        if (distance < 1e-4 * radius || std::abs(distance - radius) < 1e-4 * radius) return std::nullopt;
+        const glm::dvec3 n = way / distance, face = glm::normalize(glm::cross(own[1] - own[0], own[2] - own[0]));
+        if (glm::dot(n, face) <= 1e-6) return std::nullopt;  // from behind
+        const auto sine = [&](const glm::dvec3& from, const glm::dvec3& to) {
+            return from == to ? 0.0 : glm::dot(n, to - from) / glm::distance(to, from);
+        };
+        bool valid = !exceeds(glm::length(glm::cross(n, face)), 1e-3);
+        if (!valid) {
+            std::size_t best = 0;
+            for (std::size_t k = 1; k < 3; ++k)
+                if (glm::dot(n, own[k] - own[best]) > 0.0) best = k;
+            std::vector<glm::dvec3> stand;
+            for (const glm::dvec3& p : own)
+                if (!exceeds(sine(p, own[best]), 1e-3)) stand.push_back(p);
+            valid = true;
+            for (std::size_t j = 0; j < s.size() && stand.size() < 3; ++j) {
+                const auto other = corners(j);
+                const bool shares = std::all_of(stand.begin(), stand.end(), [&](const glm::dvec3& p) {
+                    return std::find(other.begin(), other.end(), p) != other.end();
+                });
+                for (const glm::dvec3& p : other) valid = valid && !(shares && exceeds(sine(own[best], p), 1e-3));
+            }
+        }
+        if (valid) result.push_back({static_cast<std::uint32_t>(i), radius - distance, n});
+    }
+    if (is_close) return std::nullopt;
+    return result;
 }
 
 }  // namespace
@@ -309,6 +377,58 @@ TEST_SUITE("convex/surface_contact") {
                 }
             }
         }
+    }
+
+    // Ground of slopes from 1e-4, where the rule takes edges for flat, to 1.
+    TEST_CASE("a ball on many triangles touches those that the rule for inner edges leaves, told one by one") {
+        RandomShapes random(21);
+        Manifolds found;
+        int asked = 0, contacts = 0, over_edges = 0;
+        for (int round = 0; round < 60; ++round) {
+            const double steep = std::pow(10.0, random.number(-4.0, 0.0));
+            const Surface s = ground(random, 12, 1.0, [&](double, double) { return steep * random.number(-1, 1); });
+            const Shape shape = s.shape(round % 3 == 0 ? Sides::both : Sides::front);
+            const RigidTransform pose{random.rotation(), 5.0 * random.direction()};
+            for (int i = 0; i < 60; ++i) {
+                const double radius = random.number(0.8, 4.0), margin = random.index(2) == 0 ? 0.0 : 0.1 * radius;
+                const glm::dvec3 center(random.number(-3, 3), radius + random.number(-0.3, 0.1) * radius,
+                                        random.number(-3, 3));
+                const auto expected = ball_contacts(s, center, radius, margin);
+                if (!expected || expected->empty()) continue;
+                ++asked;
+                CAPTURE(round);
+                CAPTURE(i);
+                const Shape ball = Shape::sphere(radius).value();
+                const RigidTransform at_ball{random.rotation(), pose.rotation * center + pose.translation};
+                contact_manifolds({shape, pose}, {ball, at_ball}, {.margin = margin, .max_points = 8}, found);
+                const auto expected_at = [&](std::uint32_t triangle) {
+                    return std::find_if(expected->begin(), expected->end(),
+                                        [&](const BallContact& c) { return c.triangle == triangle; });
+                };
+                double deepest = -HUGE_VAL, wanted = -HUGE_VAL;
+                for (const Manifold& m : found.all())
+                    for (int k = 0; k < m.count; ++k) {
+                        const auto c = expected_at(m.points[k].part_a.triangle);
+                        // From which end of an edge a rise is measured is a matter of rounding.
+                        if (c == expected->end()) continue;
+                        CHECK(std::abs(c->depth - m.points[k].depth) <= 1e-9 * (radius + 20.0));
+                        over_edges += m.points[k].on_a.kind != FeatureKind::face;
+                        deepest = std::max(deepest, m.points[k].depth);
+                    }
+                for (const BallContact& c : *expected) {
+                    wanted = std::max(wanted, c.depth);
+                    bool is_told = false;
+                    for (const Manifold& m : found.all())
+                        is_told = is_told || glm::dot(m.normal, pose.rotation * c.normal) > std::cos(0.0874);
+                    CHECK(is_told);
+                    ++contacts;
+                }
+                CHECK(std::abs(deepest - wanted) <= 1e-9 * (radius + 20.0));
+            }
+        }
+        MESSAGE(asked << " asked, " << contacts << " contacts, " << over_edges << " points over edges");
+        CHECK(asked > 1000);
+        CHECK(contacts > 3000);
     }
 
     TEST_CASE("ids stay while a box rests and trembles on triangles") {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <crofton/geometry/closest_points.hpp>
 
 #include "pair.hpp"
@@ -127,6 +128,82 @@ bool EdgeRule::points_into_neighbor(std::uint32_t index, const NearSurface& surf
     }
     const glm::dvec3 on = stand.on.count == 1 ? surface.pose.rotation * stand.vertex() : touch;
     return !is_in_box(on + surface.pose.translation) && any_around(surface, stand.vertex(), rises_beside);
+}
+
+namespace {
+
+// Twice what the rule asks for, so that what is told here holds for normals that are off by 1e-6.
+constexpr double kSurelySteep = 4.0 * kFlatSine * kFlatSine;
+
+bool surely_rises(double along, double squares) {
+    return along > 0.0 && along * along > kSurelySteep * squares;
+}
+
+// Where a triangle is nearest to a point: at a vertex, or at the edge from that to the next.
+struct NearestRim {
+    int vertex = -1;
+    bool is_edge = false;
+    glm::dvec3 way{0.0};  // to the point
+    double squared = 0.0;
+};
+// With way w, all of the triangle is behind the plane across w at that place: so it is the nearest. Each other corner
+// is behind by a surely more than flat angle; then w is not across the face either. -1: not surely so.
+NearestRim surely_nearest_rim(const Triangle& t, const glm::dvec3& point) {
+    const glm::dvec3 edge[3] = {t[1] - t[0], t[2] - t[1], t[0] - t[2]};
+    double along[3], length2[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+        along[k] = glm::dot(point - t[k], edge[k]);
+        length2[k] = glm::dot(edge[k], edge[k]);
+    }
+    NearestRim rim;
+    const double turn = glm::dot(edge[0], edge[1]);
+    if (!(length2[0] * length2[1] - turn * turn > 1e-6 * length2[0] * length2[1])) return rim;  // a sliver
+    for (int k = 0; k < 3; ++k) {
+        const int before = k == 0 ? 2 : k - 1, after = k == 2 ? 0 : k + 1;
+        const glm::dvec3 way = point - t[static_cast<std::size_t>(k)];
+        if (along[k] <= 0.0 && along[before] >= length2[before]) {
+            const double squared = glm::dot(way, way);
+            if (surely_rises(-along[k], squared * length2[k]) &&
+                surely_rises(along[before] - length2[before], squared * length2[before]))
+                rim = {k, false, way, squared};
+            return rim;
+        }
+        if (!(along[k] > 0.0 && along[k] < length2[k])) continue;
+        const glm::dvec3 across = way - along[k] / length2[k] * edge[k];
+        const double squared = glm::dot(across, across), rise = glm::dot(across, edge[after]);
+        if (surely_rises(-rise, squared * length2[after]) && surely_rises(-rise, squared * length2[before]))
+            return {k, true, across, squared};
+    }
+    return rim;
+}
+
+}  // namespace
+
+bool EdgeRule::surely_leaves_out(std::uint32_t index, const Ball& ball) {
+    const NearTriangle& own = triangles_[index];
+    const NearestRim rim = surely_nearest_rim(own.corners, ball.center);
+    if (rim.vertex < 0) return false;
+    const double distance = std::sqrt(rim.squared);
+    if (!(distance > ball.doubt && std::abs(distance - ball.radius) > ball.doubt)) return false;
+    const glm::dvec3 &from = own.corners[static_cast<std::size_t>(rim.vertex)],
+                     &to = own.corners[rim.vertex == 2 ? 0 : static_cast<std::size_t>(rim.vertex) + 1];
+    if (!listed_) list_corners();
+    for (std::uint32_t c = first_[slot_of(from)]; c != kNoCorner; c = next_[c]) {
+        const NearTriangle& other = triangles_[c / 3];
+        const Triangle& t = other.corners;
+        if (c / 3 == index || other.surface != own.surface || t[c % 3] != from) continue;
+        if (rim.is_edge && t[(c + 1) % 3] != to && t[(c + 2) % 3] != to) continue;
+        for (std::size_t more = 1; more < 3; ++more) {
+            const glm::dvec3 rise = t[(c + more) % 3] - from;
+            double far2 = glm::dot(rise, rise);
+            if (rim.is_edge) {  // from either end
+                const glm::dvec3 other_rise = rise - (to - from);
+                far2 = std::max(far2, glm::dot(other_rise, other_rise));
+            }
+            if (surely_rises(glm::dot(rim.way, rise), rim.squared * far2)) return true;
+        }
+    }
+    return false;
 }
 
 void EdgeRule::find_sides(std::uint32_t begin, std::uint32_t end, const glm::dvec3& point) {

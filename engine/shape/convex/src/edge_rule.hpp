@@ -31,6 +31,14 @@ class EdgeRule {
     // point of touch lies on the triangle, around the surface's origin.
     [[nodiscard]] bool points_into_neighbor(std::uint32_t index, const NearSurface& surface, const glm::dvec3& normal,
                                             const glm::dvec3& touch);
+    // Whether the triangle's nearest point to the center of a ball is surely at an edge or a vertex, along a direction
+    // by which the rule leaves the triangle out. All are in the surface's frame, which is rigid to 1e-6. Takes a
+    // quarter of the time that it takes to find the touch and to ask the rule.
+    struct Ball {
+        glm::dvec3 center;
+        double radius, doubt;  // distances that are within `doubt` of 0 or of the radius tell nothing
+    };
+    [[nodiscard]] bool surely_leaves_out(std::uint32_t index, const Ball& ball);
     // Finds the side of a surface on which a point lies, of triangles that are one surface. Of those that are connected
     // over edges the nearest one tells.
     void find_sides(std::uint32_t begin, std::uint32_t end, const glm::dvec3& point);

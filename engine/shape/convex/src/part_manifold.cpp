@@ -320,12 +320,19 @@ class ManifoldFinder {
         const ManifoldList::Mark before = scratch_.list.mark();
         scratch_.rule.start(scratch_.triangles, b);
         const auto has_points = [&] { return scratch_.list.mark().points > before.points; };
+        // Which of the triangles without points the shape meets matters only if none has any.
+        passes_over_ = b.shape.kind() == Kind::sphere && scratch_.triangles.size() >= kManyTriangles;
         Answer answer = ask_triangles(b, Push::by_rule, of_b, flip);
+        if (passes_over_ && !has_points()) {
+            passes_over_ = false;
+            answer = ask_triangles(b, Push::by_rule, of_b, flip);
+        }
         if (answer.opposite) {
             scratch_.list.rewind(before);
             (void)ask_triangles(b, Push::to_one_side, of_b, flip);
             if (!has_points()) answer = ask_triangles(b, Push::by_rule, of_b, flip);
         }
+        passes_over_ = false;
         if (answer.left_out && !has_points()) (void)ask_triangles(b, Push::always, of_b, flip);
     }
 
@@ -350,7 +357,9 @@ class ManifoldFinder {
             const SurfaceContacts contacts(surface, b, options_.margin);
             if (push == Push::to_one_side && surface.shape->sides() == Sides::both)
                 scratch_.rule.find_sides(i, end_of_surface(i), contacts.middle());
+            const EdgeRule::Ball ball{contacts.middle(), b.shape.radius(), contacts.doubt()};
             for (; i < count && scratch_.triangles[i].surface == at; ++i) {
+                if (passes_over_ && scratch_.rule.surely_leaves_out(i, ball)) continue;
                 contacts.ask(scratch_.triangles[i], i, scratch_.rule, push, scratch_.contact);
                 answer.left_out = answer.left_out || scratch_.contact.left_out;
                 if (scratch_.contact.points.count > 0 && surface.shape->sides() == Sides::both)
@@ -400,7 +409,9 @@ class ManifoldFinder {
 
     const ManifoldOptions& options_;
     bool only_surfaces_ = false;  // convex parts have been asked already
-    glm::dvec3 front_{0.0};       // of the triangle that stands for a convex shape; 0 where it has two sides
+    bool passes_over_ = false;    // a ball passes over the triangles that the rule for inner edges surely leaves out
+    static constexpr std::size_t kManyTriangles = 6;
+    glm::dvec3 front_{0.0};  // of the triangle that stands for a convex shape; 0 where it has two sides
     const NumberedBeside* numbered_ = nullptr;  // with the memory
     PairMemory* memory_ = nullptr;
     Manifolds& found_;

@@ -32,6 +32,8 @@ class SurfaceContacts {
 
     // Of the shape, in the surface's frame.
     [[nodiscard]] glm::dvec3 middle() const { return Pair::local(surface_.pose.rotation, middle_); }
+    // Far more than what rounding and searches leave open of distances.
+    [[nodiscard]] double doubt() const { return 1e-6 * size_; }
 
   private:
     // How the two touch along the least deep direction; false: they do not. Points that come with it go to `contact`.
