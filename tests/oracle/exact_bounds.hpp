@@ -7,6 +7,7 @@
 #include <oracle/exact_frustum.hpp>
 #include <oracle/near_misses.hpp>
 #include <oracle/sphere_verdict.hpp>
+#include <oracle/tracked.hpp>
 
 namespace crofton::oracle {
 
@@ -71,7 +72,7 @@ inline bool is_rejected_by_a_plane(const Frustum& frustum, const Sphere& sphere)
 }
 
 inline cull::Verdict classify(const Frustum& frustum, const Sphere& sphere) {
-    return SphereVerdict<mpq_class>(frustum, sphere)();
+    return decide([&]<class Number>() { return SphereVerdict<Number>(frustum, sphere)(); });
 }
 
 }  // namespace crofton::oracle
