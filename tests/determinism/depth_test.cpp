@@ -65,7 +65,7 @@ TEST_SUITE("determinism/depth") {
     }
 
     TEST_CASE("casters whose shadows a camera sees") {
-        check_everywhere(0x1739c788c08a23ce, [](Executor& executor) {
+        check_everywhere(0x1ff6485c63b7c621, [](Executor& executor) {
             Random random(7);
             const TriangleMesh mesh = hilly_grid(24, random);
             const auto cut = depth::ClusteredMesh::cut(mesh.positions, mesh.indices).value();
