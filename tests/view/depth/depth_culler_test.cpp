@@ -263,14 +263,19 @@ TEST_CASE("fans of needles hide no more than they cover") {
 
 TEST_CASE("ground that reaches behind the eye hides no more than it covers") {
     DepthCuller culler;
-    for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    for (std::uint64_t seed = 1; seed <= 400; ++seed) {
         CAPTURE(seed);
         oracle::NearMisses random(seed);
         Scene scene;
         const auto squares = static_cast<std::uint32_t>(3 + random.index(30));
-        scene.meshes.emplace_back(hills(squares, 30.0f, float(random.number(0.1, 4.0)), random),
-                                  static_cast<std::uint32_t>(1 + random.index(6)));
-        scene.objects.push_back({&scene.meshes[0], glm::dmat4(1.0), random.index(2) == 0});
+        TriangleMesh mesh = hills(squares, 30.0f, float(random.number(0.1, 4.0)), random);
+        // Coordinates far from 0 are rounded to more of a pixel.
+        const float reach = seed % 2 == 0 ? 0.0f : std::exp2(float(random.number(4.0, 13.0)));
+        const glm::vec3 offset(reach, 0.0f, 0.5f * reach);
+        for (glm::vec3& p : mesh.positions) p += offset;
+        scene.meshes.emplace_back(std::move(mesh), static_cast<std::uint32_t>(1 + random.index(6)));
+        const glm::dmat4 place = glm::translate(glm::dmat4(1.0), -glm::dvec3(offset));
+        scene.objects.push_back({&scene.meshes[0], place, random.index(2) == 0});
         Camera camera;
         camera.position = {random.number(-20, 20), random.number(-1.0, 4.0), random.number(-20, 20)};
         camera.forward = glm::dvec3(random.number(-1, 1), random.number(-0.9, 0.1), random.number(-1, 1));
@@ -279,6 +284,26 @@ TEST_CASE("ground that reaches behind the eye hides no more than it covers") {
         const Checked c = check(scene, camera, 160, 90, seed, culler);
         CHECK(c.lost == 0);
         CHECK(c.too_near == 0);
+    }
+}
+
+TEST_CASE("ground that reaches behind the eye hides what is below it") {
+    const std::vector<glm::vec3> corners = {
+        {-500, -1.7f, -500}, {500, -1.7f, -500}, {500, -1.7f, 500}, {-500, -1.7f, 500}};
+    const std::vector<std::uint32_t> indices = {0, 2, 1, 0, 3, 2};
+    const auto ground = depth::ClusteredMesh::cut(corners, indices).value();
+    const glm::dmat4 to_clip = world_to_clip(Camera{.aspect = 16.0 / 9.0, .near_distance = 0.085});
+    const DepthObject object{.mesh = &ground, .to_clip = glm::mat4(to_clip), .one_sided = true};
+    DepthCuller culler;
+    REQUIRE(culler.find_visible({&object, 1}, {1280, 720}).has_value());
+    for (const double distance : {10.0, 20.0, 40.0, 80.0}) {
+        const glm::dvec4 clip = to_clip * glm::dvec4(0.0, -1.7, -distance, 1.0);
+        const double depth = clip.z / clip.w;
+        const auto row = static_cast<std::uint32_t>(360.0 * (1.0 + clip.y / clip.w));
+        CAPTURE(distance);
+        // Half a row and the margin for the slope are an eighth of 13 rows to the horizon.
+        CHECK(double(culler.nearness(640, row)) > 0.85 * depth);
+        CHECK(double(culler.nearness(640, row)) < 1.05 * depth);
     }
 }
 

@@ -28,20 +28,18 @@ struct NearLimits {
     std::uint32_t count;
 };
 
-// Only what is farther than least_w() hides, since products move what is nearer by too many pixels.
+// Only what is farther than least_w_ hides, since products move what is nearer by too many pixels.
 class NearFaceSetup {
   public:
     NearFaceSetup(const PictureData& picture, const ObjectData& object, const ClipErrors& errors)
         : picture_(picture), object_(object), errors_(errors) {
-        constexpr float kError = 0x1p-6f;
-        least_w_ = std::max(pixel_error(picture_, errors_, kError), 1e-30f);  // at least 64 · errors_.w
+        constexpr float kError = 0x1p-3f;
+        least_w_ = std::max(pixel_error(picture_, errors_, kError), 1e-30f);  // at least 8 · errors_.w
         const auto size = static_cast<float>(std::max(picture.tiles.width, picture.tiles.height));
-        move_ = picture_.grid + kError + 0x1p-20f * size;
-        depth_error_ = (errors_.z + errors_.w) / least_w_;
+        grid_ = picture_.grid + 0x1p-20f * size;
+        move_ = grid_ + kError;
+        depth_error_ = 1.25f * (errors_.z + errors_.w);
     }
-
-    [[nodiscard]] float least_w() const { return least_w_; }
-    [[nodiscard]] float move() const { return move_; }
 
     void set(const ClusteredMesh::Block& block, std::uint32_t i, const PatchVertices& vertices, Faces& f,
              NearLimits& limits) const {
@@ -123,25 +121,39 @@ class NearFaceSetup {
             depth[0] += share * line[0] * z, depth[1] += share * line[1] * z, depth[2] += share * at * z;
             inverse_w[0] += share * line[0], inverse_w[1] += share * line[1], inverse_w[2] += share * at;
         }
+        const double change = std::abs(inverse_w[0]) + std::abs(inverse_w[1]);  // of 1 / w, by pixels
         for (int k = 0; k < 3; ++k) {
             const double *const a = normals[k], *const b = normals[k == 0 ? 2 : k - 1];
             const auto turn = static_cast<float>(std::abs(a[0] * b[1] - a[1] * b[0]));
-            f.corner[k][i] = vertices.w[c[k]] < least_w_ ? 0.0f
-                             : turn > 0.0f               ? 4.0f * move_ / turn
-                                                         : std::numeric_limits<float>::infinity();
+            const float w = vertices.w[c[k]];
+            f.corner[k][i] = w < least_w_  ? 0.0f
+                             : turn > 0.0f ? 4.0f * move_near(w, static_cast<float>(change)) / turn
+                                           : std::numeric_limits<float>::infinity();
         }
-        f.across[i] = static_cast<float>(depth[0]), f.up[i] = static_cast<float>(depth[1]);
-        f.base[i] = static_cast<float>(depth[2]);
+        // Depth is off by depth_error_ / w, which is a plane, too.
+        double plane[3], most[3];
+        for (int k = 0; k < 3; ++k) {
+            plane[k] = depth[k] - depth_error_ * inverse_w[k];
+            most[k] = std::abs(depth[k]) + depth_error_ * std::abs(inverse_w[k]);
+        }
+        f.across[i] = static_cast<float>(plane[0]), f.up[i] = static_cast<float>(plane[1]);
+        f.base[i] = static_cast<float>(plane[2]);
         f.plane_x[i] = picture_.half_width, f.plane_y[i] = picture_.half_height;
-        const float slope = std::abs(f.across[i]) + std::abs(f.up[i]);
-        const float rounding =
-            depth_error_ + 0x1p-20f * (std::abs(f.base[i]) + slope * (picture_.half_width + picture_.half_height));
+        const auto slope = static_cast<float>(most[0] + most[1]);
+        // Vertices have a nearness of 1 at most, where the near plane clips them.
+        f.below[i] =
+            0x1p-20f * (1.0f + static_cast<float>(most[2]) + slope * (picture_.half_width + picture_.half_height));
         f.steps[i] = 8.0f * move_ * slope;
-        f.below[i] = rounding;
+        const double before = 4.0 * (f.below[i] + depth_error_ / least_w_);
         limits.count = 0;
         return add_limit(limits, -inverse_w[0], -inverse_w[1], 1.0 / least_w_ - inverse_w[2]) &&
-               add_limit(limits, -depth[0], -depth[1], picture_.near_share - depth[2] - double{4.0f * rounding}) &&
+               add_limit(limits, -depth[0], -depth[1], picture_.near_share - depth[2] - before) &&
                std::isfinite(f.below[i]) && std::isfinite(f.steps[i]);
+    }
+
+    // By how many pixels vertices may lie elsewhere, half a pixel around a corner.
+    [[nodiscard]] float move_near(float w, float change) const {
+        return std::min(move_, grid_ + pixel_error(picture_, errors_, 1.0f) * (1.0f / w + 0.5f * change));
     }
 
     // What is right of `at`, or left of it, by the numbers that a line has where its normal is of length 1.
@@ -209,7 +221,7 @@ class NearFaceSetup {
     const PictureData& picture_;
     const ObjectData& object_;
     const ClipErrors& errors_;
-    float move_, depth_error_, least_w_;
+    float grid_, move_, depth_error_, least_w_;
 };
 
 }  // namespace crofton::depth::HWY_NAMESPACE
