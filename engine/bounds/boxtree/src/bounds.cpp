@@ -34,6 +34,8 @@ int edge_shift_of(const Leaf& leaf) {
     return std::min(31, std::ilogb(leaf.position_unit) - std::ilogb(leaf.edge_unit));
 }
 
+constexpr int kEmptyHalf = -32767;  // of an empty lane
+
 // By shifts, which vectors have.
 void unpack(const Int16x2 (&pairs)[kWidth], int (&lower)[kWidth], int (&upper)[kWidth]) {
     for (unsigned lane = 0; lane < kWidth; ++lane) {
@@ -48,13 +50,14 @@ void clear(Node& node) {
     node = {};
     node.parent = kNone;
     node.layers_every = ~std::uint32_t{0};
-    for (unsigned lane = 0; lane < kWidth; ++lane) clear_lane(node, lane);
+    std::fill_n(node.middle_half_z, kWidth, pair_of(0, kEmptyHalf));
+    std::fill_n(node.half_xy, kWidth, pair_of(kEmptyHalf, kEmptyHalf));
+    std::fill_n(node.child, kWidth, kNone);
 }
 
 void clear(Leaf& leaf) {
     leaf = {};
     leaf.parent = kNone;
-    for (unsigned lane = 0; lane < kWidth; ++lane) clear_lane(leaf, lane);
 }
 
 void clear_lane(Leaf& leaf, unsigned lane) {
@@ -176,7 +179,7 @@ bool is_frame(const Node& node) {
 }
 
 bool write_lane(Node& node, unsigned lane, const Aabb& bounds, const Axes& axes) {
-    int middle[3] = {}, half[3] = {-32767, -32767, -32767}, l1_radius = 0;
+    int middle[3] = {}, half[3] = {kEmptyHalf, kEmptyHalf, kEmptyHalf}, l1_radius = 0;
     if (!bounds.is_empty()) {
         const double per_unit = 1.0 / double{node.unit}, error_bound = error_bound_of(axes, node, bounds);
         for (int j = 0; j < 3; ++j) {

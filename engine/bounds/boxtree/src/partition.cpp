@@ -284,34 +284,54 @@ bool Splitter::divide_on(const Cost& cost, std::size_t& work) {
     }
 }
 
+namespace {
+
+float spread_of(const float (&values)[kWidth]) {
+    const auto lanes = [&](unsigned first) { return detail::load4(reinterpret_cast<const char*>(values + first)); };
+    detail::Lanes4 low = lanes(0), high = low;
+    for (unsigned first = 4; first < kWidth; first += 4) {
+        low = detail::lesser(lanes(first), low);
+        high = detail::larger(lanes(first), high);
+    }
+    return std::max({float{high[0]}, float{high[1]}, float{high[2]}, float{high[3]}}) -
+           std::min({float{low[0]}, float{low[1]}, float{low[2]}, float{low[3]}});
+}
+
+using Ranks = std::uint32_t[kWidth];
+
+// How many values come before each; equal ones keep their order. Without branches, so that vectors do it.
+void rank(const float (&values)[kWidth], Ranks& ranks) {
+    std::fill_n(ranks, kWidth, 0u);
+    for (unsigned j = 0; j < kWidth; ++j)
+        for (unsigned i = 0; i < kWidth; ++i) ranks[i] += static_cast<std::uint32_t>(values[j] < values[i]);
+    std::uint32_t sum = 0;
+    for (const std::uint32_t before : ranks) sum += before;
+    const bool has_equal = sum != kWidth * (kWidth - 1) / 2;
+    for (unsigned j = 0; has_equal && j < kWidth; ++j)
+        for (unsigned i = j + 1; i < kWidth; ++i) ranks[i] += static_cast<std::uint32_t>(values[j] == values[i]);
+}
+
+}  // namespace
+
 void halve(std::span<BuildItem, kWidth> items) {
     float centers[3][kWidth];
     unsigned widest = 0;
     float most = -1.0f;
     for (unsigned axis = 0; axis < 3; ++axis) {
         for (unsigned i = 0; i < kWidth; ++i) centers[axis][i] = items[i].twice_center(axis);
-        const auto [low, high] = std::minmax_element(centers[axis], centers[axis] + kWidth);
-        if (*high - *low > most) most = *high - *low, widest = axis;
+        const float spread = spread_of(centers[axis]);
+        if (spread > most) most = spread, widest = axis;
     }
-    // An item's rank is how many centres come before its own; equal ones keep their order.
-    std::uint32_t ranks[3][kWidth] = {};
-    for (unsigned axis = 0; axis < 3; ++axis) {
-        if (axis != 0 && axis != widest) continue;
-        const float(&along)[kWidth] = centers[axis];
-        for (unsigned j = 0; j < kWidth; ++j)
-            for (unsigned i = 0; i < kWidth; ++i)
-                ranks[axis][i] +=
-                    static_cast<std::uint32_t>(along[j] < along[i]) |
-                    (static_cast<std::uint32_t>(along[j] == along[i]) & static_cast<std::uint32_t>(j < i));
-    }
-    std::array<BuildItem, kWidth> along_x;
-    std::array<bool, kWidth> is_first;
-    for (unsigned i = 0; i < kWidth; ++i) {
-        along_x[ranks[0][i]] = items[i];
-        is_first[ranks[0][i]] = ranks[widest][i] < kWidth / 2;
-    }
+    Ranks along_x, along_widest;
+    rank(centers[0], along_x);
+    if (widest != 0) rank(centers[widest], along_widest);
+    const Ranks& halves = widest != 0 ? along_widest : along_x;
+    std::uint32_t in_order[kWidth];  // along x
+    for (unsigned i = 0; i < kWidth; ++i) in_order[along_x[i]] = i;
+    std::array<BuildItem, kWidth> result;
     unsigned first = 0, second = kWidth / 2;
-    for (unsigned i = 0; i < kWidth; ++i) items[is_first[i] ? first++ : second++] = along_x[i];
+    for (const std::uint32_t i : in_order) result[halves[i] < kWidth / 2 ? first++ : second++] = items[i];
+    std::copy(result.begin(), result.end(), items.begin());
 }
 
 }  // namespace crofton::boxtree

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <crofton/boxtree/radius_range.hpp>
+#include <crofton/geometry/float_lanes.hpp>
 #include <cstring>
 #include <limits>
 #include <utility>
@@ -13,6 +14,9 @@
 #include "turned_bounds.hpp"
 
 namespace crofton::boxtree {
+
+using detail::Lanes4;
+
 // Fills the gap that an item leaves with the leaf's last item.
 void Placement::vacate(ItemId item) {
     const std::uint32_t slot = structure_.item_slots_[item];
@@ -82,20 +86,24 @@ unsigned Placement::best_lane(const Node& node, const Aabb& box) const {
     const auto of_volume = static_cast<float>(volume / most), of_area = static_cast<float>(area / most),
                of_edges = static_cast<float>(cost.edges / most);
     const ChildEnds ends = ends_of(node);
-    float old[3][kWidth], grown[3][kWidth], sizes[kWidth], growths[kWidth];
-    for (unsigned j = 0; j < 3; ++j)
-        for (unsigned lane = 0; lane < kWidth; ++lane) {
-            const float low = ends.low[j][lane], high = ends.high[j][lane];
-            old[j][lane] = high < low ? 0.0f : high - low;
-            grown[j][lane] = (high < box_high[j] ? box_high[j] : high) - (box_low[j] < low ? box_low[j] : low);
-        }
-    const auto value = [&](const float(&size)[3][kWidth], unsigned lane) {
-        const float x = size[0][lane], y = size[1][lane], z = size[2][lane];
-        return of_volume * (x * y * z) + of_area * (x * y + y * z + z * x) + of_edges * (x + y + z);
+    float sizes[kWidth], growths[kWidth];
+    const Lanes4 volumes = detail::all_lanes(of_volume), areas = detail::all_lanes(of_area),
+                 edges = detail::all_lanes(of_edges);
+    const auto value = [&](const Lanes4& x, const Lanes4& y, const Lanes4& z) {
+        return volumes * (x * y * z) + areas * (x * y + y * z + z * x) + edges * (x + y + z);
     };
-    for (unsigned lane = 0; lane < kWidth; ++lane) {
-        sizes[lane] = value(old, lane);
-        growths[lane] = value(grown, lane) - sizes[lane];
+    for (unsigned first = 0; first < kWidth; first += 4) {
+        Lanes4 old[3], grown[3];
+        for (unsigned j = 0; j < 3; ++j) {
+            const Lanes4 low = detail::load4(reinterpret_cast<const char*>(ends.low[j] + first)),
+                         high = detail::load4(reinterpret_cast<const char*>(ends.high[j] + first));
+            old[j] = detail::larger(high - low, detail::all_lanes(0.0f));
+            grown[j] = detail::larger(detail::all_lanes(box_high[j]), high) -
+                       detail::lesser(detail::all_lanes(box_low[j]), low);
+        }
+        const Lanes4 size = value(old[0], old[1], old[2]), growth = value(grown[0], grown[1], grown[2]) - size;
+        std::memcpy(sizes + first, &size, sizeof size);
+        std::memcpy(growths + first, &growth, sizeof growth);
     }
     unsigned best = 0;
     for (unsigned lane = 1; lane < node.count; ++lane) {

@@ -7,6 +7,7 @@
 #include <crofton/geometry/float_lanes.hpp>
 #include <cstring>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "leaf_bounds.hpp"
@@ -30,6 +31,7 @@ Lanes4 load_lanes(const float* from) {
 // Bounds with a component for each axis side by side; the fourth is 0.
 struct WideBounds {
     Lanes4 low, high;
+    WideBounds() = default;
     WideBounds(const LaneBounds& bounds)
         : low{bounds.low[0], bounds.low[1], bounds.low[2], 0.0f},
           high{bounds.high[0], bounds.high[1], bounds.high[2], 0.0f} {}
@@ -41,6 +43,7 @@ struct WideBounds {
         const Lanes4 size = high - low;
         return size[0] + size[1] + size[2];
     }
+    [[nodiscard]] LaneBounds narrow() const { return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}}; }
 };
 
 float extent_of(const LaneBounds& bounds) {
@@ -97,18 +100,45 @@ std::size_t lane_for(const BoundBlock& block, const LaneBounds& bounds) {
 // A block that is split has seventeen children; five vectors of keys.
 constexpr std::size_t kSplitCount = kBoxBlock + 1, kSplitPadded = kBoxBlock + 4;
 
+using SplitOrder = std::array<std::uint8_t, kSplitCount>;
+
 // The order of the first seventeen keys; equal ones keep theirs.
-void put_in_order(const float (&keys)[kSplitPadded], std::size_t (&order)[kSplitCount]) {
+void put_in_order(const float (&keys)[kSplitPadded], SplitOrder& order) {
     // Each one's place is how many come before it: no branch to guess, and vectors of four.
     std::int32_t places[kSplitPadded] = {}, sum = 0;
-    for (std::size_t m = 0; m < kSplitCount; ++m)
+    for (std::size_t m = 0; m < kSplitCount + 1; ++m)  // an even number: two at a time; the last is infinite
         for (std::size_t n = 0; n < kSplitPadded; ++n) places[n] += static_cast<std::int32_t>(keys[m] < keys[n]);
     for (std::size_t n = 0; n < kSplitCount; ++n) sum += places[n];
     const bool has_equal = sum != static_cast<std::int32_t>(kSplitCount * (kSplitCount - 1) / 2);
     for (std::size_t m = 0; has_equal && m < kSplitCount; ++m)
         for (std::size_t n = m + 1; n < kSplitCount; ++n) places[n] += static_cast<std::int32_t>(keys[m] == keys[n]);
-    for (std::size_t n = 0; n < kSplitCount; ++n) order[places[n]] = n;
+    for (std::size_t n = 0; n < kSplitCount; ++n)
+        order[static_cast<std::size_t>(places[n])] = static_cast<std::uint8_t>(n);
 }
+
+// What seventeen children are ordered by: twice their centres along each axis, and their extents. Infinity follows.
+struct SplitKeys {
+    float of[4][kSplitPadded];
+
+    SplitKeys(const BoundBlock& block, const LaneBounds& one_more) {
+        for (std::size_t first = 0; first < kBoxBlock; first += 4) {
+            Lanes4 low[3], high[3];
+            for (int i = 0; i < 3; ++i) {
+                low[i] = load_lanes(block.low[i] + first);
+                high[i] = load_lanes(block.high[i] + first);
+                put(i, first, low[i] + high[i]);
+            }
+            put(3, first, (high[0] - low[0]) + (high[1] - low[1]) + (high[2] - low[2]));
+        }
+        for (auto& key : of) std::fill_n(key + kSplitCount, kSplitPadded - kSplitCount, kInfinity);
+        for (int i = 0; i < 3; ++i) of[i][kBoxBlock] = one_more.low[i] + one_more.high[i];
+        of[3][kBoxBlock] = extent_of(one_more);
+    }
+
+  private:
+    static constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    void put(int key, std::size_t first, const Lanes4& values) { std::memcpy(of[key] + first, &values, sizeof values); }
+};
 
 // Blocks that are made at once get room for a part more: each insertion into a full leaf makes one.
 constexpr std::size_t kRoomPart = 16;
@@ -272,9 +302,10 @@ std::uint32_t ItemTree::make_block(std::size_t level) {
 void ItemTree::fill(std::size_t level, std::uint32_t block, std::span<const Entry> entries) {
     Level& filled = levels_[level];
     filled.counts[block] = static_cast<std::uint8_t>(entries.size());
+    BoundBlock& bounds = filled.bounds.edit(block);
     for (std::size_t lane = 0; lane < kBoxBlock; ++lane) {
         const bool used = lane < entries.size();
-        put_lane(used ? entries[lane].bounds : kEmpty, lane, filled.bounds.edit(block));
+        put_lane(used ? entries[lane].bounds : kEmpty, lane, bounds);
         filled.children.set(block * kBoxBlock + lane, used ? entries[lane].child : 0);
         if (used) set_place(level, entries[lane].child, static_cast<std::uint32_t>(block * kBoxBlock + lane));
     }
@@ -324,26 +355,17 @@ void ItemTree::grow(std::size_t level, std::uint32_t block, const LaneBounds& bo
 // Seventeen children in two blocks, cut along the axis, or by size, where the sum of both blocks' extents is least.
 void ItemTree::split(std::size_t level, std::uint32_t block, const Entry& entry) {
     constexpr std::size_t kCount = kSplitCount;
-    Entry entries[kCount], best[kCount];
-    for (std::size_t lane = 0; lane < kBoxBlock; ++lane)
-        entries[lane] = {level, levels_[level].children[block * kBoxBlock + lane],
-                         lane_of(levels_[level].bounds[block], lane)};
-    entries[kBoxBlock] = entry;
-    std::array<WideBounds, kCount> wide = [&]<std::size_t... N>(std::index_sequence<N...>) {
-        return std::array<WideBounds, kCount>{WideBounds(entries[N].bounds)...};
-    }
-    (std::make_index_sequence<kCount>());
+    const BoundBlock& from = levels_[level].bounds[block];
+    WideBounds wide[kCount];
+    for (std::size_t lane = 0; lane < kBoxBlock; ++lane) wide[lane] = lane_of(from, lane);
+    wide[kBoxBlock] = entry.bounds;
     float least = std::numeric_limits<float>::infinity();
     std::size_t cut = kCount / 2;
-    std::size_t order[kCount], best_order[kCount];
-    for (std::size_t n = 0; n < kCount; ++n) best_order[n] = n;
-    for (int axis = 0; axis < 4; ++axis) {
-        float keys[kSplitPadded];
-        for (std::size_t n = 0; n < kSplitPadded; ++n) {
-            const LaneBounds& bounds = entries[std::min(n, kCount - 1)].bounds;
-            keys[n] = axis < 3 ? bounds.low[axis] + bounds.high[axis] : extent_of(bounds);
-        }
-        put_in_order(keys, order);
+    SplitOrder order, best_order;
+    std::iota(best_order.begin(), best_order.end(), std::uint8_t{0});
+    const SplitKeys keys(from, entry.bounds);
+    for (const auto& key : keys.of) {
+        put_in_order(key, order);
         float extent_from[kCount + 1];
         WideBounds bounds = kEmpty;
         for (std::size_t n = kCount; n-- > kFewestAfterSplit;) {
@@ -351,6 +373,7 @@ void ItemTree::split(std::size_t level, std::uint32_t block, const Entry& entry)
             extent_from[n] = bounds.extent();
         }
         bounds = kEmpty;
+        const float least_before = least;
         for (std::size_t n = 1; n <= kCount - kFewestAfterSplit; ++n) {
             bounds.include(wide[order[n - 1]]);
             if (n < kFewestAfterSplit) continue;
@@ -358,15 +381,21 @@ void ItemTree::split(std::size_t level, std::uint32_t block, const Entry& entry)
             if (!(sum < least)) continue;
             least = sum;
             cut = n;
-            std::copy_n(order, kCount, best_order);
         }
+        if (least < least_before) best_order = order;
     }
-    for (std::size_t n = 0; n < kCount; ++n) best[n] = entries[best_order[n]];
+    Entry best[kCount];
+    WideBounds bounds[2] = {kEmpty, kEmpty};
+    for (std::size_t n = 0; n < kCount; ++n) {
+        const std::size_t lane = best_order[n];
+        const std::uint32_t child = lane == kBoxBlock ? entry.child : levels_[level].children[block * kBoxBlock + lane];
+        best[n] = {level, child, wide[lane].narrow()};
+        bounds[n < cut ? 0 : 1].include(wide[lane]);
+    }
     const std::uint32_t other = make_block(level);
     fill(level, block, {best, cut});
     fill(level, other, {best + cut, kCount - cut});
-    Entry halves[2] = {{level + 1, block, kEmpty}, {level + 1, other, kEmpty}};
-    for (std::size_t n = 0; n < kCount; ++n) include(best[n].bounds, halves[n < cut ? 0 : 1].bounds);
+    const Entry halves[2] = {{level + 1, block, bounds[0].narrow()}, {level + 1, other, bounds[1].narrow()}};
     for (const Entry& half : halves) levels_[level].extents[half.child] = extent_of(half.bounds);
     if (level + 1 == level_count_) {
         ++level_count_;

@@ -87,7 +87,12 @@ void BoundSet<Bound>::resize(std::size_t size) {
     rows_.resize((size + 63) / 64 * 4);  // whole words of verdicts
     records_.resize(size);
     chunks_.resize((size + kChunk - 1) / kChunk);
-    for (std::size_t i = size; i < rows_.size() * 16; ++i) clear_row(rows_[i / 16], i % 16);
+    const std::size_t whole = (size + 15) / 16;
+    for (std::size_t i = size; i < whole * 16; ++i) clear_row(rows_[i / 16], i % 16);
+    for (RowBlock& block : std::span(rows_).subspan(whole)) {
+        std::fill_n(block.xy, 16, 0u);
+        std::fill_n(block.zr, 16, kUnboundedRadius << 16);
+    }
 }
 
 template <class Bound>

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <span>
 #include <type_traits>
+#include <utility>
 
 namespace crofton {
 
@@ -63,23 +64,24 @@ class GrowingVector {
     }
     void clear() { resize(0); }
 
-    // Takes memory for `count` more, after which appending them takes none. Takes an eighth more than there is, where
-    // there is no room.
+    // Takes memory for `count` more, after which appending them takes none. Where there is no room, it also takes a
+    // part more, so that the next appends need not copy.
     void make_room(std::size_t count) {
-        const std::size_t most = values_.capacity();
-        if (values_.size() + count > most) {
+        const std::size_t most = values_.capacity(), needed = values_.size() + count;
+        if (needed > most) {
             stop_growing();
-            values_.reserve(values_.size() + values_.size() / 8 + count + 16);
+            values_.reserve(needed + values_.size() / 8 + count / 24 + 16);
         } else if (next_.capacity() == 0 && most * sizeof(T) > kSmall && (most - values_.size()) < most / kRoomPart) {
             edited_.reserve(kMostEdited);
-            next_.reserve(most + most / 8);
+            next_.reserve(most + most / kGrowthPart);
         }
     }
     void append(std::size_t count, const T& value) {
         if (count == 0) return;
         make_room(count);
-        // Ends when half the room that is left now is used.
-        const std::size_t room = (values_.capacity() - values_.size() - count) / 2;
+        appended_ = true;
+        // Ends when three quarters of the room that is left now are used.
+        const std::size_t room = (values_.capacity() - values_.size() - count) / 4 * 3;
         values_.resize(values_.size() + count, value);
         if (next_.capacity() > 0) copy((values_.size() - next_.size()) / (room / count + 1) + count);
     }
@@ -89,19 +91,27 @@ class GrowingVector {
         values_.insert(values_.end(), values.begin(), values.end());
     }
 
-    // Copies what has changed, and some more. Call it now and then where elements change.
+    // Copies what has changed, and some more if nothing has been appended. Call it now and then where elements change.
     void settle() {
-        if (next_.capacity() > 0) copy(edited_.size() + kSmall / 8 / sizeof(T));
+        const bool appended = std::exchange(appended_, false);
+        if (next_.capacity() > 0) copy(appended ? 0 : kSmall / 8 / sizeof(T));
     }
 
-    // Copies the rest at once.
+    // Ends copying, and gives back most of the room. For when many elements have come and few will.
     void finish() {
-        if (next_.capacity() > 0) copy(values_.size());
+        stop_growing();
+        const std::size_t enough = values_.size() + values_.size() / kRoomPart + 16;
+        if (values_.capacity() <= enough + enough / kRoomPart) return;
+        next_.reserve(enough);
+        copy(values_.size());
     }
 
   private:
     static constexpr std::size_t kSmall = std::size_t{1} << 15;  // bytes
-    static constexpr std::size_t kRoomPart = 32, kMostEdited = 1024;
+    // Copying begins when this part of the room is left, and each append copies 4/3 times as many elements. So that
+    // large elements are copied a few at a time, it begins earlier with them, and they get more room.
+    static constexpr bool kIsLarge = sizeof(T) > 256;
+    static constexpr std::size_t kRoomPart = kIsLarge ? 10 : 16, kGrowthPart = kIsLarge ? 4 : 8, kMostEdited = 1024;
 
     void note(std::size_t i) {
         if (!edited_.empty() && edited_.back() == i) return;
@@ -126,6 +136,7 @@ class GrowingVector {
 
     Vector<T> values_, next_;       // the second: the first elements, in larger memory; without any: nothing grows
     Vector<std::uint32_t> edited_;  // those that have been copied and may have changed since
+    bool appended_ = false;         // since the last settle()
 };
 
 }  // namespace crofton
