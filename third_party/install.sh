@@ -38,7 +38,7 @@ python_packages=(python3-dev python3-numpy python3-pytest python3-setuptools pyt
 rust_packages=(cargo)
 csharp_packages=(mono-mcs mono-runtime libmono-system-core4.0-cil)
 web_packages=(emscripten nodejs node-typescript dpkg-dev chromium doxygen mkdocs mkdocs-material)
-packaging_packages=(debhelper dpkg-dev help2man lintian abigail-tools)
+packaging_packages=(ccache debhelper debootstrap dpkg-dev help2man lintian abigail-tools unzip)
 slurm_packages=(slurm-wlm munge)
 platform_packages=(m4 clang libc++-14-dev libc++abi-14-dev g++-i686-linux-gnu g++-riscv64-linux-gnu g++-aarch64-linux-gnu qemu-user
     g++-mingw-w64-x86-64-posix wine64 wine emscripten nodejs dpkg-dev make)

@@ -111,6 +111,7 @@ def write_pages(pages):
                 shutil.copy(file, copy)
         # Lists and tables may follow a line of text, as on GitHub; mkdocs wants an empty line between.
         text = re.sub(r"^(?![-|\s]|\d+\. )(.+)\n(?=(?:- |\d+\. |\| ))", r"\1\n\n", text, flags=re.M)
+        text = re.sub(r"^(#+ .*\w)#$", r"\1\\#", text, flags=re.M)  # mkdocs takes the end of "## C#" for a closing mark
         (pages / name).write_text(start_page(text) if name == "README.md" else text)
     (pages / "python.md").write_text(python_reference())
 
