@@ -20,6 +20,14 @@ std::size_t count_of(const std::string& text, const std::string& part) {
     return count;
 }
 
+// The page's text: pictures in base64 spell any word.
+std::string without_pictures(std::string page) {
+    const std::string mark = "base64,";
+    for (std::size_t at = page.find(mark); at != std::string::npos; at = page.find(mark, at + mark.size()))
+        page.erase(at + mark.size(), page.find('"', at) - at - mark.size());
+    return page;
+}
+
 }  // namespace
 
 TEST_SUITE("cli/html_report") {
@@ -43,10 +51,11 @@ TEST_SUITE("cli/html_report") {
         for (const char* id : {"occlusion", "chart-occlusion-triangles", "chart-occlusion-frame", "verification"})
             CHECK_MESSAGE(page.find("id=\"" + std::string(id) + "\"") != std::string::npos, id);
         for (const auto& column : crofton::pipeline::occlusion_columns())
-            if (std::string(column.name).find("gpu_") == std::string::npos)
+            if (std::string(column.name).find("gpu_") == std::string::npos &&
+                !std::string_view(column.name).starts_with("shadow_"))
                 CHECK_MESSAGE(page.find("<tr><td>" + std::string(column.name) + "</td>") != std::string::npos,
                               column.name);
-        CHECK(page.find("nan") == std::string::npos);
+        CHECK(without_pictures(page).find("nan") == std::string::npos);
     }
     TEST_CASE("a report holds charts, pictures, settings and the verdict, and loads nothing") {
         const std::string file = scratch().file("report.html");
@@ -58,7 +67,7 @@ TEST_SUITE("cli/html_report") {
         CHECK(page.find("id=\"verification\"") != std::string::npos);
         CHECK(page.find("0 mismatches") != std::string::npos);
         CHECK(count_of(page, "http://") + count_of(page, "https://") + count_of(page, "<script") == 0);
-        CHECK(page.find("nan") == std::string::npos);
+        CHECK(without_pictures(page).find("nan") == std::string::npos);
         // Every number of the CSV has a row; a scene has no regions.
         for (const auto& column : crofton::pipeline::statistics_columns())
             if (!std::string_view(column.name).starts_with("gpu_") &&

@@ -49,11 +49,9 @@ struct Rebuilder::Work {
     // The stages, in order. The last, `apply_changes`, brings into `next` what has changed during the others.
     enum class Stage : std::uint8_t { add, divide, clear_slots, link, fill, bound, apply_changes, done };
 
-    Work(const Structure& current, Items& all, bool many_were_placed)
+    Work(const Structure& current, Items& all, const BuildGrain& grain)
         : items(all),
-          many_placed(many_were_placed),
-          builder(scene_of(current), all.count_in_leaves(), current.criterion(), current.orientation(),
-                  many_placed && current.orientation() == Orientation::aligned ? kWithRoom : BuildGrain{}),
+          builder(scene_of(current), all.count_in_leaves(), current.criterion(), current.orientation(), grain),
           next(Owner<Structure>::make(all, current.criterion(), current.orientation())),
           changed((all.size() + 63) / 64, 0),
           placed(changed.size(), 0) {}
@@ -63,7 +61,6 @@ struct Rebuilder::Work {
     }
 
     Items& items;
-    bool many_placed;  // since the rebuild before
     Builder builder;
     Owner<Structure> next;
     Stage stage = Stage::add;
@@ -103,7 +100,8 @@ Owner<Structure> Rebuilder::step(const Structure& current, Items& items, std::si
     if (!work_) {
         if (items.count_in_leaves() == 0) return {};
         const bool many_placed = std::exchange(placed_, 0) * kManyPlaced >= items.count_in_leaves();
-        work_ = Owner<Work>::make(current, items, many_placed);
+        const bool leaves_room = many_placed && current.orientation() == Orientation::aligned;
+        work_ = Owner<Work>::make(current, items, leaves_room ? kWithRoom : BuildGrain{});
     }
     if (work_->stage == Work::Stage::apply_changes) budget += work_->new_work;
     work_->new_work = 0;
@@ -152,7 +150,7 @@ std::size_t Rebuilder::divide(const Structure& current, std::size_t budget) {
     last_step_.visits = work_->builder.visits() - visits_before;
     if (!done) return budget;
     work_->builder.release_scratch();
-    work_->next->begin_steps(work_->builder.result(), work_->many_placed);
+    work_->next->begin_steps(work_->builder.result());
     work_->enter(Work::Stage::clear_slots);
     return budget;
 }

@@ -46,9 +46,9 @@ Aabb Structure::bounds_below(std::uint32_t child, std::uint32_t axes) const {
 }
 
 void Structure::make_room(const Topology& topology, std::size_t more_items) {
-    // An insertion into a full leaf splits it, and the leaves are full.
-    const std::size_t leaves = std::min(more_items, more_items / 10 + kWidth);
-    reserve(topology.nodes.size() + leaves / 3, topology.leaves.size() + leaves);
+    // An insertion may split a leaf; leaves that have been split take eight more.
+    const std::size_t leaves = std::min(more_items, more_items / kWidth + kWidth);
+    reserve(topology.nodes.size() + leaves / 2, topology.leaves.size() + leaves);
     item_slots_.reserve(items_.size() + more_items);
     height_ = topology.height;
     axes_.resize(std::max(axes_.size(), topology.axes.size()));
@@ -137,14 +137,11 @@ void Structure::bound_nodes(NodeId begin, NodeId end) {
     }
 }
 
-void Structure::begin_steps(const Topology& topology, bool many_will_come) {
+void Structure::begin_steps(const Topology& topology) {
     height_ = topology.height;
     axes_.resize(std::max(axes_.size(), topology.axes.size()));
-    // With room for what changes will add: where items change so much that the tree is rebuilt, it will grow. If many
-    // come, most leaves are split before the next rebuild: the items that come until then are as many as the leaves.
-    const std::size_t leaves = topology.leaves.size(), nodes = topology.nodes.size();
-    reserve(many_will_come ? nodes + nodes / 2 + 16 : with_room(nodes),
-            many_will_come ? leaves + leaves / 8 * 7 + 16 : with_room(leaves));
+    // With room for what changes will add: where items change so much that the tree is rebuilt, it will grow.
+    reserve(with_room(topology.nodes.size()), with_room(topology.leaves.size()));
     item_slots_.reserve(with_room(items_.size()));
 }
 

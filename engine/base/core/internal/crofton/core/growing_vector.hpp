@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <span>
 #include <type_traits>
-#include <utility>
 
 namespace crofton {
 
@@ -64,24 +63,23 @@ class GrowingVector {
     }
     void clear() { resize(0); }
 
-    // Takes memory for `count` more, after which appending them takes none. Where there is no room, it also takes a
-    // part more, so that the next appends need not copy.
+    // Takes memory for `count` more, after which appending them takes none. Takes an eighth more than there is, where
+    // there is no room.
     void make_room(std::size_t count) {
-        const std::size_t most = values_.capacity(), needed = values_.size() + count;
-        if (needed > most) {
+        const std::size_t most = values_.capacity();
+        if (values_.size() + count > most) {
             stop_growing();
-            values_.reserve(needed + values_.size() / 8 + count / 24 + 16);
+            values_.reserve(values_.size() + values_.size() / 8 + count + 16);
         } else if (next_.capacity() == 0 && most * sizeof(T) > kSmall && (most - values_.size()) < most / kRoomPart) {
             edited_.reserve(kMostEdited);
-            next_.reserve(most + most / kGrowthPart);
+            next_.reserve(most + most / 8);
         }
     }
     void append(std::size_t count, const T& value) {
         if (count == 0) return;
         make_room(count);
-        appended_ = true;
-        // Ends when three quarters of the room that is left now are used.
-        const std::size_t room = (values_.capacity() - values_.size() - count) / 4 * 3;
+        // Ends when half the room that is left now is used.
+        const std::size_t room = (values_.capacity() - values_.size() - count) / 2;
         values_.resize(values_.size() + count, value);
         if (next_.capacity() > 0) copy((values_.size() - next_.size()) / (room / count + 1) + count);
     }
@@ -91,27 +89,19 @@ class GrowingVector {
         values_.insert(values_.end(), values.begin(), values.end());
     }
 
-    // Copies what has changed, and some more if nothing has been appended. Call it now and then where elements change.
+    // Copies what has changed, and some more. Call it now and then where elements change.
     void settle() {
-        const bool appended = std::exchange(appended_, false);
-        if (next_.capacity() > 0) copy(appended ? 0 : kSmall / 8 / sizeof(T));
+        if (next_.capacity() > 0) copy(edited_.size() + kSmall / 8 / sizeof(T));
     }
 
-    // Ends copying, and gives back most of the room. For when many elements have come and few will.
+    // Copies the rest at once.
     void finish() {
-        stop_growing();
-        const std::size_t enough = values_.size() + values_.size() / kRoomPart + 16;
-        if (values_.capacity() <= enough + enough / kRoomPart) return;
-        next_.reserve(enough);
-        copy(values_.size());
+        if (next_.capacity() > 0) copy(values_.size());
     }
 
   private:
     static constexpr std::size_t kSmall = std::size_t{1} << 15;  // bytes
-    // Copying begins when this part of the room is left, and each append copies 4/3 times as many elements. So that
-    // large elements are copied a few at a time, it begins earlier with them, and they get more room.
-    static constexpr bool kIsLarge = sizeof(T) > 256;
-    static constexpr std::size_t kRoomPart = kIsLarge ? 10 : 16, kGrowthPart = kIsLarge ? 4 : 8, kMostEdited = 1024;
+    static constexpr std::size_t kRoomPart = 32, kMostEdited = 1024;
 
     void note(std::size_t i) {
         if (!edited_.empty() && edited_.back() == i) return;
@@ -136,7 +126,6 @@ class GrowingVector {
 
     Vector<T> values_, next_;       // the second: the first elements, in larger memory; without any: nothing grows
     Vector<std::uint32_t> edited_;  // those that have been copied and may have changed since
-    bool appended_ = false;         // since the last settle()
 };
 
 }  // namespace crofton

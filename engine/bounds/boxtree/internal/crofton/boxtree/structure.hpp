@@ -58,7 +58,7 @@ class Structure {
     void reset_marks() { marks_.reset(leaves_.size()); }
 
     // The same in steps. Each continues where the last one of its kind ended.
-    void begin_steps(const Topology& topology, bool many_will_come);
+    void begin_steps(const Topology& topology);
     void add_items(ItemId end);
     void add_nodes(NodeId end, const Topology& topology);
     void add_leaves(LeafId end, const Topology& topology, const Structure& current);
