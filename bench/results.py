@@ -11,7 +11,7 @@
       <!-- table NAME --> and <!-- end -->.
       A table with "plain": true shows its CSV's own rows, which another command has written. One with "columns" has a
       CSV and an instruction set for each column; "cold": true takes each row's benchmark with cold caches. A row's "scene"
-      is added to the name of the CSV: cull_city.csv.
+      is added to the name of the CSV: cull_city.csv. "texts" are the heads of columns whose cells the rows give.
   bench/results.py check
       as tables, but writes nothing and exits with 1 where a page would change: the test of the docs.
 
@@ -87,7 +87,7 @@ def measure(bench, arguments):
             options.append(argument)
     if not any(option.startswith("--benchmark_filter") for option in options):
         wanted = {one for table in specifications().values() for one in names_in(table, name)}
-        options.append("--benchmark_filter=^(" + "|".join(sorted(re.escape(one) for one in wanted)) + ")(/iterations:.*)?$")
+        options.append("--benchmark_filter=^(" + "|".join(sorted(re.sub(r"([^\w ,/-])", r"\\\1", one) for one in wanted)) + ")(/iterations:.*)?$")
     if not any(option.startswith("--benchmark_repetitions") for option in options):
         options.append("--benchmark_repetitions=5")
     rows = []
@@ -142,7 +142,8 @@ def table_of(table, times):
     """The lines of a table: least to median of each row, per instruction set, and how many times as long the other takes."""
     sets = table["instruction_sets"]
     others = any(row.get("beside") for row in table["rows"])
-    head = [table["title"]] + [f"{table['unit']}, {name}" for name in sets] + ([table["beside"]] if others else [])
+    texts = table.get("texts", [])
+    head = [table["title"]] + [f"{table['unit']}, {name}" for name in sets] + ([table["beside"]] if others else []) + texts
     lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
     for row in table["rows"]:
         scale = 1.0 / row["divide_by"]
@@ -152,6 +153,7 @@ def table_of(table, times):
             ratios = [times[beside, name][0] / times[row["benchmark"], name][0] for name in sets] if beside else []
             shown = (lambda ratio: f"{ratio:.2f}") if table.get("fine_ratios") else number
             cells.append(f"{' / '.join(shown(ratio) for ratio in ratios)} ×" if ratios else "")
+        cells += row.get("texts", [""] * len(texts))
         lines.append("| " + " | ".join(cells) + " |")
     return lines
 

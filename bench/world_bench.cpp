@@ -4,8 +4,8 @@
 //   bench_world               the table
 //   bench_world --churn       what ten million spawns and despawns leave behind, as CSV; --churn=N: N of them
 //     --live=N, --part=N      among so many objects, of which an Nth changes in an update; 20,000 and 100
-//   bench_world --changes     what an update costs in which one object comes, goes, moves or changes, and queries
-//                             among what moves
+//   bench_world --changes     what an update costs in which one object comes, goes, moves or changes, as CSV
+//   bench_world --queries     queries among objects of which some move
 //   bench_world --bytes       bytes an object, as CSV
 //   bench_world --stacks      what an update of a thousand stacked crates costs, as shapes and as boxes
 //   bench_world --regions     a World of a thousand regions compared with one of a million objects
@@ -54,7 +54,8 @@ constexpr Row kRows[] = {
 
 struct Options {
     int frames = 200, repetitions = 1;
-    bool churn = false, changes = false, stacks = false, bytes = false, regions = false, growth = false;
+    bool churn = false, changes = false, queries = false, stacks = false, bytes = false, regions = false,
+         growth = false;
     std::size_t spawns = 10'000'000, live = 20'000, part = 100;
     std::string out;
     std::regex filter{""};
@@ -72,6 +73,8 @@ bool parse(int argc, char** argv, Options& options) {
             options.churn = true, options.spawns = value.empty() ? options.spawns : std::stoul(value);
         else if (key == "--changes")
             options.changes = true;
+        else if (key == "--queries")
+            options.queries = true;
         else if (key == "--bytes")
             options.bytes = true;
         else if (key == "--regions")
@@ -148,8 +151,13 @@ int main(int argc, char** argv) {
         return 0;
     }
     if (options.changes) {
-        std::printf("instruction set: %s\n", target);
+        std::printf("# command: bench_world --changes --frames=%d --target=%s\n", options.frames, target);
         crofton::bench::changes(options.frames);
+        return 0;
+    }
+    if (options.queries) {
+        std::printf("instruction set: %s\n", target);
+        crofton::bench::queries_among_movers();
         return 0;
     }
     if (options.stacks) {

@@ -74,8 +74,11 @@ void churn(std::size_t live_count, std::size_t part, std::size_t spawns);
 // Bytes an object: a table to stdout (world_bytes.cpp).
 void bytes();
 
-// Updates in which one object changes, and queries while some move: a table to stdout (world_changes.cpp).
+// Updates in which one object changes: rows of a CSV to stdout (world_changes.cpp).
 void changes(int frames);
+
+// Queries while some objects move: a table to stdout (world_changes.cpp).
+void queries_among_movers();
 
 // Worlds of regions: a table to stdout (world_regions.cpp).
 void regions(int frames);
