@@ -29,7 +29,8 @@ using Clock = std::chrono::steady_clock;
 struct TriangulateOptions {
     std::string file, method = "minimum-weight", map, json, svg, out;
     double seconds = std::numeric_limits<double>::infinity();
-    double work = 0.0;  // in millions of steps, where it is given
+    double work = 0.0;       // in millions of steps, where it is given
+    double memory = 1024.0;  // MiB
     double tolerance = -1.0, attribute_tolerance = 1e-4;
     bool no_indices = false, compare = false, has_tolerance = false, is_mesh_option_given = false,
          is_work_given = false;
@@ -49,6 +50,7 @@ Result<Method> method_from(const std::string& name) {
 triangulate::TriangulateOptions limits_of(const TriangulateOptions& options, Method method) {
     triangulate::TriangulateOptions limits{.method = method, .seconds = options.seconds, .should_stop = should_stop};
     constexpr double kMost = 1e12;
+    limits.bytes = static_cast<std::size_t>(std::min(options.memory, kMost) * 0x1p20);
     if (options.is_work_given)
         limits.work = options.work < kMost ? static_cast<std::uint64_t>(1e6 * options.work) : limits.kUnlimitedWork;
     return limits;
@@ -68,7 +70,7 @@ Json to_json(const NamedPolygon& named, const Triangulation& result, double micr
 }
 
 struct Totals {
-    std::size_t polygons = 0, refused = 0, vertices = 0, holes = 0, triangles = 0, optimal = 0;
+    std::size_t polygons = 0, refused = 0, vertices = 0, holes = 0, triangles = 0, optimal = 0, out_of_memory = 0;
     double weight = 0.0, microseconds = 0.0, largest_gap = 0.0;
 
     void add(const Polygon& polygon, const Triangulation& result, double time) {
@@ -94,6 +96,9 @@ void print_table(const TriangulateOptions& options, const Totals& t) {
         std::printf("%zu %s not proven minimal, but at most %.2g times as heavy as the minimum\n", open,
                     open == 1 ? "polygon is" : "polygons are", 1.0 + t.largest_gap);
     }
+    if (t.out_of_memory)
+        std::printf("%zu %s the limit of memory before that of time: --memory-limit %.0f is more\n", t.out_of_memory,
+                    t.out_of_memory == 1 ? "polygon reached" : "polygons reached", 4.0 * std::max(options.memory, 1.0));
     if (t.refused) std::printf("%zu %s refused\n", t.refused, t.refused == 1 ? "polygon was" : "polygons were");
 }
 
@@ -116,6 +121,10 @@ Result<int> run_polygons(const TriangulateOptions& options, Method method) {
             const double time = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
             if (done) {
                 totals.add(polygons[i].polygon, results[i], time);
+                // With a limit of time alone, only that of memory can have ended the search before.
+                totals.out_of_memory += method == Method::minimum_weight && !results[i].optimal &&
+                                        !options.is_work_given && 1e-6 * time < options.seconds &&
+                                        std::isfinite(options.seconds);
                 entries.push_back(to_json(polygons[i], results[i], time, options.no_indices));
             } else if (done.error().code == ErrorCode::cancelled) {
                 break;
@@ -241,6 +250,11 @@ void add_triangulate_command(CommandLine& line) {
         .option("--time-limit,--seconds", options->seconds,
                 "Seconds per polygon; the result then depends on the machine")
         .show_default();
+    command
+        .option("--memory-limit", options->memory,
+                "MiB for the candidates of a polygon's search, which ends when they are used up")
+        .show_default()
+        .not_negative();
     const Option tolerance =
         command.option("--tolerance", options->tolerance,
                        "Largest distance from a plane that counts as in it; a millionth of the mesh's size by default");

@@ -150,7 +150,13 @@ TEST_SUITE("cli/triangulate") {
             const CliRun run = run_cli("triangulate '" + scratch().file("late.poly") + "' " + limit);
             CHECK(run.status == 0);
             CHECK(run.out.find("1 polygon is not proven minimal") != std::string::npos);
+            CHECK(run.out.find("memory") == std::string::npos);
         }
+        const CliRun full =
+            run_cli("triangulate '" + scratch().file("late.poly") + "' --time-limit 1000 --memory-limit 1");
+        CHECK(full.status == 0);
+        CHECK(full.out.find("1 polygon reached the limit of memory before that of time: --memory-limit 4 is more") !=
+              std::string::npos);
     }
 
     TEST_CASE("a time limit is the only limit, and work is not limited as well") {
