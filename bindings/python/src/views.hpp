@@ -26,7 +26,7 @@ struct HeldRequest {
     py::object seen;  // by the camera, for the view of a light
 };
 
-// What a light's view is given: a ViewResult, and the radius of lookups.
+// The receivers of a light's view: the camera's ViewResult, and the radius of lookups.
 struct HeldReceivers {
     py::object seen;
     float radius = 1.0f;

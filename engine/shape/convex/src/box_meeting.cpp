@@ -81,13 +81,11 @@ struct Doubled {
 // of the size, which is below `pair.error`. Nothing: nearer to a touch than that, or no such boxes.
 std::optional<bool> upright_boxes_meet(const Pair& pair) {
     const glm::dmat3 &ra = pair.pose_a.rotation, &rb = pair.pose_b.rotation;
-    int k = 0, i = -1, j = -1;
-    for (; k < 3; ++k)
-        if ((i = upright_edge(ra, k)) >= 0 && (j = upright_edge(rb, k)) >= 0) break;
-    if (k == 3) return std::nullopt;
+    const auto [k, i, j] = upright_of(ra, rb);
+    if (k < 0) return std::nullopt;
     const glm::dvec3 &half_a = pair.a.half_extents(), &half_b = pair.b.half_extents();
-    const auto cross = [k](const glm::dvec3& u, const glm::dvec3& v) {
-        return coordinate(u, kNext[k]) * coordinate(v, kLast[k]) - coordinate(u, kLast[k]) * coordinate(v, kNext[k]);
+    const auto cross = [next = kNext[k], last = kLast[k]](const glm::dvec3& u, const glm::dvec3& v) {
+        return coordinate(u, next) * coordinate(v, last) - coordinate(u, last) * coordinate(v, next);
     };
     const glm::dvec3 u[2] = {coordinate(half_a, kNext[i]) * ra[kNext[i]], coordinate(half_a, kLast[i]) * ra[kLast[i]]},
                      v[2] = {coordinate(half_b, kNext[j]) * rb[kNext[j]], coordinate(half_b, kLast[j]) * rb[kLast[j]]};

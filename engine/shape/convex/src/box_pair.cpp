@@ -49,6 +49,14 @@ int upright_edge(const glm::dmat3& edges, int k) {
     return upright;
 }
 
+Upright upright_of(const glm::dmat3& edges_a, const glm::dmat3& edges_b) {
+    for (int k = 2; k >= 0; --k) {
+        const int i = upright_edge(edges_a, k), j = i < 0 ? i : upright_edge(edges_b, k);
+        if (j >= 0) return {k, i, j};
+    }
+    return {};
+}
+
 BoxPair::BoxPair(const Pair& pair)
     : pair_(pair),
       half_a_(pair.a.half_extents()),
@@ -62,19 +70,12 @@ BoxPair::BoxPair(const Pair& pair)
         at_ = pair.offset;
         return;
     }
-    if (!common_frame_) find_upright();
+    if (!common_frame_) upright_ = upright_of(pair.pose_a.rotation, pair.pose_b.rotation);
     const glm::dmat3& r = pair.pose_a.rotation;
     const glm::dvec3 x = glm::cross(r[1], r[2]), y = glm::cross(r[2], r[0]), z = glm::cross(r[0], r[1]);
     const double share = 1.0 / glm::dot(r[0], x);
     to_a_[0] = share * x, to_a_[1] = share * y, to_a_[2] = share * z;
     for (int k = 0; k < 3; ++k) at_[k] = glm::dot(to_a_[k], pair.offset);
-}
-
-void BoxPair::find_upright() {
-    for (int k = 0; k < 3; ++k) {
-        const int i = upright_edge(pair_.pose_a.rotation, k), j = i < 0 ? i : upright_edge(pair_.pose_b.rotation, k);
-        if (j >= 0) upright_ = {k, i, j};
-    }
 }
 
 void BoxPair::find_products() {

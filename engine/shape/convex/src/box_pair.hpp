@@ -25,6 +25,14 @@ inline constexpr int kNext[3] = {1, 2, 0}, kLast[3] = {2, 0, 1};  // in a circle
 // The edge that is coordinate k's axis or its opposite, while the two others are across it, all exactly; -1: none.
 [[nodiscard]] int upright_edge(const glm::dmat3& edges, int k);
 
+// Edges i of a and j of b are exactly along coordinate k, and all others are across it; else k is -1. Then what is
+// across edge i or j and another is across two edges of one box, and what is across two others is along k. So the faces
+// have all axes, and face j of b has that of face i of a.
+struct Upright {
+    int k = -1, i = 0, j = 0;
+};
+[[nodiscard]] Upright upright_of(const glm::dmat3& edges_a, const glm::dmat3& edges_b);
+
 // A separating axis: 0-2 across the faces of a, 3-5 of b, 6 + 3i + j across edge i of a and edge j of b.
 struct BoxAxis {
     int number = -1;
@@ -83,7 +91,6 @@ class BoxPair {
     void find_products();
     [[nodiscard]] BoxAxis least_of_straight(double far);
     [[nodiscard]] BoxAxis least_in_common_frame(double far);
-    void find_upright();
     [[nodiscard]] BoxAxis least_of_upright(double far);
     [[nodiscard]] double face_of_a(int k);
     [[nodiscard]] double face_of_b(int j);
@@ -94,12 +101,7 @@ class BoxPair {
     const glm::dvec3 &half_a_, &half_b_;
     bool straight_;      // neither box is turned
     bool common_frame_;  // the poses' rotations are the same: the faces of a have all axes
-    // Edges i of a and j of b are exactly along coordinate k, and all others are across it; else k is -1. Then what is
-    // across edge i or j and another is across two edges of one box, and what is across two others is along k. So the
-    // faces have all axes, and face j of b has that of face i of a.
-    struct Upright {
-        int k = -1, i = 0, j = 0;
-    } upright_;
+    Upright upright_;
     double depth_margin_, error_, sliver_width_ = 0.0;
     int slivers_ = 0;                         // bit 3i + j
     int near_ = 0;                            // by number: axes along which rounding may hide that they part the boxes

@@ -223,10 +223,6 @@ glm::dvec3 normal_of_face(const ShapeAtPose& placed, int face, const glm::dvec3&
     return patch.normal;
 }
 
-}  // namespace
-
-namespace {
-
 // The touch at the deepest vertex and its shadow on the face.
 void set_at_vertex(const FaceView& view, int face, const glm::dvec3& vertex, Touch& touch) {
     const Feature at_face{FeatureKind::face, static_cast<std::uint16_t>(face)},

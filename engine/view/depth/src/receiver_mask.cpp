@@ -66,6 +66,12 @@ std::array<double, 4> clip_of(const ObjectData& object, const glm::dvec3& point)
     return clip;
 }
 
+// Pixels, and nearness.
+glm::dvec3 place_of(const PictureData& picture, const std::array<double, 4>& clip) {
+    return {clip[0] / clip[3] * double{picture.half_width} + double{picture.middle_x},
+            clip[1] / clip[3] * double{picture.half_height} + double{picture.middle_y}, clip[2] / clip[3]};
+}
+
 // How much the nearness of a triangle's plane changes from pixel to pixel, |across| + |up|; infinity if that is not
 // known. Planes: docs/notes/depth.md, "Near the eye".
 float slope_of(const PictureData& picture, const ObjectData& object, const std::array<glm::dvec3, 3>& corners) {
@@ -231,9 +237,7 @@ ReceiverMask::PictureTriangle ReceiverMask::triangle_in_picture(const Piece& pie
     for (std::size_t k = 0; k < 3; ++k) {
         const std::array<double, 4> clip = clip_of(in_picture_, piece.corners[k]);
         t.before_eye = t.before_eye && clip[3] > 0.0;
-        t.corners[k] = {clip[0] / clip[3] * double{picture_.half_width} + double{picture_.middle_x},
-                        clip[1] / clip[3] * double{picture_.half_height} + double{picture_.middle_y},
-                        clip[2] / clip[3]};
+        t.corners[k] = place_of(picture_, clip);
     }
     return t;
 }
@@ -374,8 +378,7 @@ ReceiverMask::MapTriangle ReceiverMask::triangle_in_map(const Piece& piece, cons
     double least_w = std::numeric_limits<double>::infinity(), deepest = 0.0;
     for (std::size_t k = 0; k < 3; ++k) {
         const std::array<double, 4> clip = clip_of(in_map_, piece.corners[k]);
-        t.corners[k] = {clip[0] / clip[3] * double{map_.half_width} + double{map_.middle_x},
-                        clip[1] / clip[3] * double{map_.half_height} + double{map_.middle_y}, clip[2] / clip[3]};
+        t.corners[k] = place_of(map_, clip);
         least_w = std::min(least_w, clip[3]);
         deepest = std::max(deepest, std::abs(t.corners[k].z));
     }
