@@ -345,6 +345,10 @@ TEST_SUITE("bake/write_file") {
         CHECK(flushed.size() == 3);
         CHECK(error_of(bake::flush_files(std::vector{folder.file("none")})).message.find("none: cannot open") !=
               std::string::npos);
+        flushed.clear();
+        reason = 0;
+        CHECK_FALSE(bake::flush_files(std::vector{std::string("a\0b", 3), paths[1]}));
+        CHECK(flushed.size() == 2);  // the file after the bad path, and its folder
     }
 
     TEST_CASE("a failing disk is an error and the old file stays, and a disk that cannot flush is written to") {

@@ -221,10 +221,11 @@ Result<void> flush_files(std::span<const std::string> paths) {
         Result<void> result;
         Vector<std::string> folders;
         for (const std::string& path : paths) {
-            if (auto checked = check_path(path); !checked) return checked;
-            const std::string target = behind_links(path), folder = folder_of(target);
-            auto flushed = is_special(target) ? Result<void>() : flush_one(target);
-            if (!flushed && result) result = std::move(flushed);
+            auto flushed = check_path(path);
+            const std::string target = flushed ? behind_links(path) : std::string(), folder = folder_of(target);
+            if (flushed && !is_special(target)) flushed = flush_one(target);
+            if (!flushed && result) result = flushed;
+            if (target.empty()) continue;
             if (std::find(folders.begin(), folders.end(), folder) == folders.end()) folders.push_back(folder);
         }
         for (const std::string& folder : folders) flush_folder(folder);
