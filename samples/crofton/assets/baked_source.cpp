@@ -15,7 +15,8 @@ constexpr const char* kGlow = "vi_glow";       // a colour for each triangle of 
 constexpr const char* kGlowEnds = "vi_glend";  // where the colours of each mesh end
 
 struct VisitHead {
-    std::uint32_t in_metres = 0, reserved = 0;
+    std::uint32_t knows_unit = 0;
+    float unit = 0.0f;  // metres; older files have 0 for 1
 };
 struct RoomRecord {
     double corners[8] = {};  // x, z each
@@ -72,7 +73,7 @@ bool is_room(const RoomRecord& record) {
 }
 
 void add_visit(const SceneSource& source, bake::Writer& writer) {
-    const VisitHead head{source.in_metres ? 1u : 0u, 0};
+    const VisitHead head{source.unit > 0.0 ? 1u : 0u, static_cast<float>(source.unit)};
     writer.add(kHead, std::span<const VisitHead>(&head, 1));
     if (!source.walk.empty()) writer.add(kWalk, std::span<const glm::dvec3>(source.walk));
     std::vector<RoomRecord> rooms;
@@ -145,12 +146,14 @@ Result<Vector<std::byte>> bake_source(const SceneSource& source, Executor& execu
 Result<void> read_visit(std::span<const std::byte> file, SceneSource& source) {
     const auto reader = bake::Reader::open(file);
     if (!reader) return tl::unexpected(reader.error());
-    source.in_metres = false;  // older files do not say it
+    source.unit = 0.0;  // older files do not say it
     if (reader->has(kHead)) {
         const auto head = reader->section<VisitHead>(kHead);
         if (!head) return tl::unexpected(head.error());
         if (head->size() != 1) return damaged(kHead, "not one header");
-        source.in_metres = head->front().in_metres != 0;
+        const float unit = head->front().unit;
+        if (!std::isfinite(unit) || unit < 0.0f) return damaged(kHead, "a unit of length is no length");
+        if (head->front().knows_unit != 0) source.unit = unit > 0.0f ? static_cast<double>(unit) : 1.0;
     }
     if (reader->has(kWalk)) {
         const auto walk = reader->section<glm::dvec3>(kWalk);

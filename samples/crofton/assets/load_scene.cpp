@@ -32,12 +32,16 @@ Result<void> refuse_regions(const std::string& path) {
                 path + ": is a folder of regions, which frames, view and bake take; name one of its files");
 }
 
-Result<SceneSource> load_scene(const std::string& source, const LoadOptions& options) {
+namespace {
+
+Result<SceneSource> load_by_kind(const std::string& source, const LoadOptions& options) {
     const std::string kind = extension(source);
     if (kind != "wad" && !options.map.empty())
         return fail(ErrorCode::invalid_argument, kNoItem, source + ": a map can be chosen in a .wad file only");
     if (options.instances != 0 && source != "town")
         return fail(ErrorCode::invalid_argument, kNoItem, source + ": a number of instances goes with the town only");
+    if (options.unit > 0.0 && is_made(source))
+        return fail(ErrorCode::invalid_argument, kNoItem, source + ": is in metres; a unit goes with files only");
     if (source == "town") return make_town(options);
     if (source == "room") return make_room(options);
     if (source == "office") return make_office(options);
@@ -55,7 +59,7 @@ Result<SceneSource> load_scene(const std::string& source, const LoadOptions& opt
     if (kind == "glb" || kind == "gltf") return checked(load_gltf(source, options), source, options);
     if (kind == "obj") {
         auto loaded = checked(load_obj(source, options), source, options);
-        if (loaded) loaded->in_metres = false;
+        if (loaded) loaded->unit = 0.0;
         return loaded;
     }
     if (kind == "wad") return checked(load_wad(source, options), source, options);
@@ -63,6 +67,14 @@ Result<SceneSource> load_scene(const std::string& source, const LoadOptions& opt
                 source +
                     ": unknown kind of scene; known are town, room, office, valley, hall, folders of city parts, and "
                     "files .glb, .gltf, .obj, .wad and .crofton");
+}
+
+}  // namespace
+
+Result<SceneSource> load_scene(const std::string& source, const LoadOptions& options) {
+    auto loaded = load_by_kind(source, options);
+    if (loaded && options.unit > 0.0) loaded->unit = options.unit;
+    return loaded;
 }
 
 }  // namespace crofton::assets

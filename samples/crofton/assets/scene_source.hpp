@@ -22,6 +22,7 @@ struct LoadOptions {
     std::uint32_t instances = 0;  // of the town, roughly, at most 1,000,000; 0: about 3,000
     ReadLimits limits = {};       // of a file
     bool strict = false;          // a file of which anything would be left out is refused
+    double unit = 0.0;            // metres that a length of 1 is; 0: as the file says
 };
 
 // A convex piece of a level's sector: a prism over three or four corners, from floor to ceiling.
@@ -52,7 +53,7 @@ struct SceneSource {
     std::vector<Room> rooms = {};  // of a level
     // By mesh, where the meshes were cut when the scene was baked. Empty: not cut.
     std::vector<depth::ClusteredMesh> clusters = {};
-    bool in_metres = true;  // false: the file's format does not say what its lengths are
+    double unit = 1.0;  // metres that a length of 1 is; 0: neither the file nor its format says so
 
     // Sets the transforms of frame `frame`, at 60 frames a second; the same for the same frame. update() is the
     // caller's.

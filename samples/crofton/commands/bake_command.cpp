@@ -251,6 +251,7 @@ void add_bake_command(CommandLine& line) {
         "  crofton frames map01.crofton --camera street --occlude\n"
         "  crofton frames level.wad --map MAP01 --occlude --baked map01.crofton\n"
         "  crofton bake town --instances 1000000 -o town.crofton && crofton bake town.crofton --threads 0");
+    add_unit_option(command, options->read);
     add_read_options(command, options->read);
     command.action([options] { return BakeRun(*options).run(); });
 }

@@ -176,6 +176,8 @@ class FramesRun {
 
     // The flight begins when the regions near its first place are loaded.
     Result<void> prepare_regions(const ImageSize& size, double aspect) {
+        if (options_.read.unit > 0.0)
+            return fail(ErrorCode::unsupported, kNoItem, "--unit is not for a folder of regions");
         const FramesOptions fixed;
         if (options_.verify || options_.bounds != fixed.bounds || options_.cull != fixed.cull ||
             options_.tree != fixed.tree || !options_.baked.empty() || !options_.map.empty() || options_.instances != 0)
@@ -531,6 +533,7 @@ void add_frames_command(CommandLine& line) {
     command.option("--report", options->report, "Write one self-contained HTML page: pictures, charts, summary")
         .writable_file();
     command.option("--trace", options->trace, "Write timings for chrome://tracing or Perfetto").writable_file();
+    add_unit_option(command, options->read);
     add_read_options(command, options->read);
     command.action([options] {
         const auto status = FramesRun(*options).run();

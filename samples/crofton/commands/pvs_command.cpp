@@ -302,7 +302,7 @@ Result<Views> look_from_places(const Job& job, const pvs::Pvs& sets, Executor& e
                                                  .seed = job.options.seed,
                                                  .near_radius = job.options.near_radius,
                                                  .occluders = job.scene.found,
-                                                 .in_metres = job.source.in_metres,
+                                                 .unit = job.source.unit,
                                                  .should_stop = PartProgress::should_stop,
                                                  .user = &progress},
                                                 executor);
@@ -432,6 +432,7 @@ void add_pvs_command(CommandLine& line) {
         .whole_between(0, 256)
         .show_default();
     command.option("--json", options->json, "Write the figures as JSON; - for stdout").writable_file_or_stdout();
+    add_unit_option(command, options->read);
     add_read_options(command, options->read);
     command.action([options, cell_size] {
         if (cell_size.given() && options->cells != "rooms")

@@ -18,6 +18,14 @@ void add_read_options(Command& command, ReadOptions& options) {
     command.flag("--strict", options.strict, "Refuse files of which anything would be left out");
 }
 
+void add_unit_option(Command& command, ReadOptions& options) {
+    command
+        .option("--unit", options.unit,
+                "Metres that a length of 1 is (0.01: centimetres): how high eyes are on a street. Default: as the "
+                "file says; of .obj, which does not say it, what fits the scene")
+        .positive();
+}
+
 void print_warnings(const std::vector<std::string>& warnings) {
     constexpr std::size_t kMost = 20;
     for (std::size_t i = 0; i < warnings.size() && i < kMost; ++i)
@@ -35,6 +43,7 @@ Result<assets::SceneSource> load_updated_scene(const std::string& scene, const R
                                                assets::LoadOptions load, Executor& executor) {
     load.limits = read.limits;
     load.strict = read.strict;
+    load.unit = read.unit;
     auto source = assets::load_scene(scene, load);
     if (!source) return source;
     print_warnings(source->warnings);

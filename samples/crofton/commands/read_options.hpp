@@ -14,6 +14,7 @@ namespace crofton::cli {
 struct ReadOptions {
     assets::ReadLimits limits;
     bool strict = false;
+    double unit = 0.0;  // metres that a length of 1 is; 0: as the file says
 };
 
 // For the help of sub-commands that show scenes: what is read of files.
@@ -28,6 +29,9 @@ inline constexpr const char* kSceneFormats =
 // outlive the parsing.
 void add_read_options(Command& command, ReadOptions& options);
 
+// --unit, of sub-commands that place people's eyes.
+void add_unit_option(Command& command, ReadOptions& options);
+
 // "crofton: warning: …" to stderr, a line each; at most 20, and how many there are besides.
 void print_warnings(const std::vector<std::string>& warnings);
 
@@ -35,7 +39,7 @@ void print_warnings(const std::vector<std::string>& warnings);
 [[nodiscard]] Result<void> refuse_if_strict(const std::string& path, const std::vector<std::string>& warnings,
                                             const ReadOptions& read);
 
-// assets::load_scene with these limits, in place of those in `load`. Prints its warnings and brings it up to date.
+// assets::load_scene with these options, in place of those in `load`. Prints its warnings and brings it up to date.
 [[nodiscard]] Result<assets::SceneSource> load_updated_scene(const std::string& scene, const ReadOptions& read,
                                                              assets::LoadOptions load = {},
                                                              Executor& executor = serial_executor());

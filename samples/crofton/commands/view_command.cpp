@@ -31,6 +31,7 @@ Result<void> run(ViewArguments arguments) {
     viewer::ViewerOptions& options = arguments.options;
     options.scene.limits = arguments.read.limits;
     options.scene.strict = arguments.read.strict;
+    options.scene.unit = arguments.read.unit;
     options.width = size->width;
     options.height = size->height;
     options.settings.method.bounds = *bounds;
@@ -107,6 +108,7 @@ void add_view_command(CommandLine& line) {
     command.option("--device", options.device, "Part of the Vulkan device's name, or cpu");
     command.flag("--validation", options.validation, "Check every Vulkan call (needs the validation layer)");
     command.flag("--no-window", arguments->no_window, "Draw without a display");
+    add_unit_option(command, arguments->read);
     add_read_options(command, arguments->read);
     command.action_with_window([arguments] {
         const auto done = run(*arguments);

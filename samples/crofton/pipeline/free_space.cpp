@@ -28,8 +28,8 @@ constexpr float kUnderRoof = 4.0f, kUnderSky = 1.0f, kWithin = 0.05f, kOnBareRoo
 // A roof is bare where fewer level lines meet something; within a thing most do.
 constexpr double kBare = 0.35, kClosed = 0.75;
 constexpr int kLevelLines = 12;
-// A person needs a plan this long to walk on in the open, in eye heights. Where lengths may be no metres, half of the
-// rooms are lower than this, in metres, and the plan is not longer.
+// A person needs a plan this long to walk on in the open, in eye heights. Where the unit is unknown, half of the rooms
+// and houses are lower than this, in metres, and the plan is not longer.
 constexpr double kLeastPlan = 2.4, kHighestRoom = 60.0, kLongestPlan = 50'000.0;
 // A straight way that leaves out places stays this near to them in height.
 constexpr double kHeightTolerance = 0.25;
@@ -80,7 +80,11 @@ std::optional<FreeSpace> FreeSpace::find(const scene::Scene& scene, const Aabb& 
     FreeSpace space(std::move(*geometry), std::move(*tracer), focus);
     const glm::dvec3 size = focus.max - focus.min;
     const double share = std::min(0.2 * std::max(size.y, 1e-3 * size.x), 0.01 * space.size_);
-    if (space.find_places(focus, options, kPersonEye) && space.fits_a_person(focus, options.in_metres)) return space;
+    const bool is_known = options.unit > 0.0;
+    if (space.find_places_of_a_person(focus, options, is_known ? options.unit : 1.0)) return space;
+    if (!is_known && !space.is_indoors())  // rooms tell the eye's height better than a unit does
+        for (const double unit : {0.01, 0.001})
+            if (space.find_places_of_a_person(focus, options, unit)) return space;
     if (!(share > 0.0) || !space.find_places(focus, options, share)) return std::nullopt;
     const double room = space.median_room();
     if (!space.is_indoors() || kEyeOfRoom * room <= share) return space;
@@ -100,11 +104,17 @@ struct FreeSpace::Column {
     [[nodiscard]] double depth(std::size_t i) const { return static_cast<double>(hits[i].t); }
 };
 
+bool FreeSpace::find_places_of_a_person(const Aabb& focus, const FreeSpaceOptions& options, double unit) {
+    unit_ = unit;
+    if (find_places(focus, options, kPersonEye / unit) && fits_a_person(focus, options)) return true;
+    unit_ = 0.0;
+    return false;
+}
+
 bool FreeSpace::find_places(const Aabb& focus, const FreeSpaceOptions& options, double eye_height) {
     eye_height_ = eye_height;
     const double longer = std::max(focus.max.x - focus.min.x, focus.max.z - focus.min.z);
-    const bool by_metres = eye_height == kPersonEye;
-    const double wanted = by_metres ? std::ceil(longer / kPersonSpacing) : 0.0;
+    const double wanted = std::ceil(longer * unit_ / kPersonSpacing);
     const auto most = static_cast<std::uint32_t>(std::clamp(wanted, double{kColumns}, double{kMostColumns}));
     spacing_ = longer / most;
     const auto along = [&](double length) {
@@ -137,6 +147,7 @@ bool FreeSpace::find_places(const Aabb& focus, const FreeSpaceOptions& options, 
     if (places_.empty()) return false;
     connect_places();
     find_edges_of_roofs();
+    house_height_ = median_room();
     keep_best_region();
     return true;
 }
@@ -235,11 +246,14 @@ double FreeSpace::median_room() const {
 }
 
 // Whether a person would walk there: not on the roof of something closed, nor on a thing that is smaller than a person.
-bool FreeSpace::fits_a_person(const Aabb& focus, bool in_metres) const {
+bool FreeSpace::fits_a_person(const Aabb& focus, const FreeSpaceOptions& options) const {
     if (*std::max_element(worth_.begin(), worth_.end()) <= kOnBareRoof) return false;
     const double longer = std::max(focus.max.x - focus.min.x, focus.max.z - focus.min.z);
     if (!is_indoors() && longer < kLeastPlan * eye_height_) return false;
-    return in_metres || (longer <= kLongestPlan && median_room() <= kHighestRoom);
+    if (options.unit > 0.0) return true;
+    const double room = (is_indoors() ? median_room() : house_height_) * unit_;
+    if (unit_ != 1.0 && room == 0.0) return false;  // without a house nothing tells the unit
+    return longer * unit_ <= kLongestPlan && room <= kHighestRoom;
 }
 
 // In the eight columns around, no more than a step higher or lower; on long ways the floor may climb.

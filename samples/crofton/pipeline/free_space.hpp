@@ -18,16 +18,17 @@ struct Stand {
 };
 
 struct FreeSpaceOptions {
-    // Lengths are metres for sure. Where they may be something else, the scene's rooms must be as high as a person's.
-    bool in_metres = false;
+    // Metres that a length of 1 is. 0: unknown; then lengths are metres where the scene's rooms and houses are as high
+    // as a person's, else what makes them so.
+    double unit = 0.0;
     Aabb within = {};  // where eyes may be; empty: anywhere
 };
 
 // Places of an eye over floors, with ways between neighbours. Eyes are kPersonEye metres above the floor. Where no
-// person fits in or lengths are no metres, they are at such a share of the rooms' height as a person's, or, in the
-// open, at a share of the scene's size. A floor is what a vertical line meets with room above it to stand. A way
-// follows the floor, and is free where lines at eye height, at each side and at half the height meet nothing. y is up.
-// Lines are single precision: see lines::LineTracer.
+// person fits in, they are at such a share of the rooms' height as a person's, or, in the open, at a share of the
+// scene's size. A floor is what a vertical line meets with room above it to stand. A way follows the floor, and is
+// free where lines at eye height, at each side and at half the height meet nothing. y is up. Lines are single
+// precision: see lines::LineTracer.
 //
 // Of places that ways connect, those that are worth the most are kept. Places under a roof are worth the most, then
 // those under the sky. Closed things whose faces look outward only have an inside as well, which is worth less, and
@@ -47,7 +48,8 @@ class FreeSpace {
     // Of the rooms that the eye's height is a share of; 0 where it is not.
     [[nodiscard]] double room_height() const { return room_height_; }
     [[nodiscard]] double spacing() const { return spacing_; }  // of neighbouring places
-    [[nodiscard]] bool is_for_a_person() const { return eye_height_ == kPersonEye; }
+    // Metres that a length of 1 is, by the options or as guessed; 0: no person fits in.
+    [[nodiscard]] double unit() const { return unit_; }
     // A long way through them, as a polyline along free ways; the place alone where there is but one.
     [[nodiscard]] std::vector<glm::dvec3> walk() const;
     // The eye moved up or down to eye height above what is below it, but not through what is above.
@@ -60,6 +62,8 @@ class FreeSpace {
     FreeSpace(pvs::BakeGeometry geometry, lines::LineTracer tracer, const Aabb& focus);
     // Places for this height; false where there are none, or they are of no use.
     bool find_places(const Aabb& focus, const FreeSpaceOptions& options, double eye_height);
+    // The same for a person's, if a length of 1 is so many metres.
+    bool find_places_of_a_person(const Aabb& focus, const FreeSpaceOptions& options, double unit);
     struct Column;
     void add_places(const Column& column, const Aabb& focus, const FreeSpaceOptions& options);
     void connect_places();
@@ -67,7 +71,7 @@ class FreeSpace {
     void keep_best_region();
     [[nodiscard]] bool is_indoors() const;     // most places are under a roof
     [[nodiscard]] double median_room() const;  // half of the rooms are lower; 0 without any
-    [[nodiscard]] bool fits_a_person(const Aabb& focus, bool in_metres) const;
+    [[nodiscard]] bool fits_a_person(const Aabb& focus, const FreeSpaceOptions& options) const;
     [[nodiscard]] double surrounded_share(const glm::dvec3& eye) const;  // of a few level lines
     [[nodiscard]] std::vector<std::uint32_t> neighbours_of(std::uint32_t place) const;
     // Steps from a place to each; the last of the list is a farthest one. ~0u: not reached.
@@ -91,7 +95,8 @@ class FreeSpace {
 
     pvs::BakeGeometry geometry_;
     lines::LineTracer tracer_;
-    double eye_height_ = 0.0, room_height_ = 0.0, spacing_ = 0.0, size_ = 0.0;
+    double house_height_ = 0.0;  // as median_room(), of all places that were found
+    double unit_ = 0.0, eye_height_ = 0.0, room_height_ = 0.0, spacing_ = 0.0, size_ = 0.0;
     glm::uvec2 columns_{0};
     std::vector<glm::dvec3> places_;              // ascending by column, then by height
     std::vector<float> worth_;                    // by place

@@ -16,7 +16,7 @@ struct PvsViewOptions {
     double near_radius = 0.5;  // no point of a view's near plane is farther from the eye: what the proofs were told
     // Where they are given, the views are also looked at with occlusion at run time, by World::view and its defaults.
     std::shared_ptr<const SceneOccluders> occluders = nullptr;
-    bool in_metres = true;  // as FreeSpaceOptions
+    double unit = 1.0;  // as FreeSpaceOptions
     StopCallback should_stop = nullptr;
     void* user = nullptr;
 };

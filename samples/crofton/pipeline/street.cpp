@@ -15,9 +15,13 @@ std::string in_digits(double length) {
 }
 
 std::string remark_on(const FreeSpace& space, const assets::SceneSource& source, const Aabb& focus) {
-    if (space.is_for_a_person()) return {};
+    if (space.unit() == 1.0 || (space.unit() > 0.0 && space.unit() == source.unit)) return {};
+    if (space.unit() > 0.0)
+        return source.name + ": the street is " + in_digits(space.eye_height()) +
+               " above the ground, as if lengths were " + (space.unit() == 0.01 ? "centimetres" : "millimetres") +
+               ": houses would be too high in metres. --unit sets it";
     const double longer = std::max(focus.max.x - focus.min.x, focus.max.z - focus.min.z);
-    return source.name + ": no place for a person of 1.8 m" + (source.in_metres ? "" : ", if lengths are metres") +
+    return source.name + ": no place for a person of 1.8 m" + (source.unit > 0.0 ? "" : ", if lengths are metres") +
            ": the street is " + in_digits(space.eye_height()) + " above the ground, " +
            (space.room_height() > 0.0 ? "by its rooms' height of " + in_digits(space.room_height())
                                       : "by the scene's size of " + in_digits(longer));
@@ -39,7 +43,7 @@ Street street_of(const assets::SceneSource& source, const Aabb& focus) {
         street.walk = source.walk;
         return street;
     }
-    street.space = FreeSpace::find(source.scene, focus, {.in_metres = source.in_metres});
+    street.space = FreeSpace::find(source.scene, focus, {.unit = source.unit});
     if (street.space) {
         street.walk = street.space->walk();
         street.remark = remark_on(*street.space, source, focus);

@@ -56,7 +56,10 @@ bool same(const pipeline::PipelineOptions& a, const pipeline::PipelineOptions& b
 
 Result<std::unique_ptr<LoadedScene>> LoadedScene::load(const SceneRequest& request, const Method& method,
                                                        const Settings& settings, const LoadedScene* like) {
-    if (pipeline::holds_regions(request.source)) return load_regions(request, settings);
+    if (pipeline::holds_regions(request.source)) {
+        if (request.unit > 0.0) return fail(ErrorCode::unsupported, kNoItem, "--unit is not for a folder of regions");
+        return load_regions(request, settings);
+    }
     const auto criterion = pipeline::criterion_for(method.bounds, typical_camera());
     if (!criterion) return tl::unexpected(criterion.error());
     assets::LoadOptions options;
@@ -66,6 +69,7 @@ Result<std::unique_ptr<LoadedScene>> LoadedScene::load(const SceneRequest& reque
     options.instances = request.instances;
     options.limits = request.limits;
     options.strict = request.strict;
+    options.unit = request.unit;
     auto source = assets::load_scene(request.source, options);
     if (!source) return tl::unexpected(std::move(source.error()));
     if (method.triangulation != Triangulation::loaded)

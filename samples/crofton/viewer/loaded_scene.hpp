@@ -24,6 +24,7 @@ struct SceneRequest {
     assets::ReadLimits limits = {};
     bool strict = false;
     bool waits_for_regions = false;  // of a folder of regions, so that pictures do not depend on the time
+    double unit = 0.0;               // metres that a length of 1 is; 0: as the file says
 };
 
 class LoadedScene {

@@ -62,7 +62,7 @@ void check_same_source(const assets::SceneSource& a, const assets::SceneSource& 
         CHECK(p.translation == q.translation);
         CHECK(a.scene.layer_masks()[i] == b.scene.layer_masks()[i]);
     }
-    CHECK(a.in_metres == b.in_metres);
+    CHECK(a.unit == b.unit);
     CHECK(a.walk == b.walk);
     CHECK(std::equal(a.rooms.begin(), a.rooms.end(), b.rooms.begin(), b.rooms.end(), same));
     check_same_flags(a.flat, b.flat);
@@ -126,7 +126,7 @@ TEST_SUITE("assets/baked_source") {
         check_same_flags(source->flat, {1, 0, 1, 1, 1});
         check_same_flags(source->one_sided, {1, 1, 0, 1, 0});
         check_same_flags(source->unlit, {0, 0, 0, 1, 0});
-        CHECK(source->in_metres);
+        CHECK(source->unit == 1.0);
         CHECK(source->emission.size() == 5);
         check_kept(file.path());
     }
@@ -170,7 +170,7 @@ TEST_SUITE("assets/baked_source") {
         const TemporaryFile file("old.crofton", text_of(*bytes));
         const auto old = assets::load_scene(file.path());
         REQUIRE_MESSAGE(old.has_value(), test_files::message(old));
-        CHECK_FALSE(old->in_metres);
+        CHECK(old->unit == 0.0);
         CHECK(old->walk.empty());
         CHECK(old->flat.empty());
         CHECK(old->clusters.empty());

@@ -114,6 +114,20 @@ TEST_SUITE("cli/faults") {
         CHECK(tells(strict.err, "line 5"));
     }
 
+    TEST_CASE(
+        "--unit sets how high the street's eyes are, also in a baked file, and is refused where it means nothing") {
+        const std::string obj = scratch().file("plain.obj"), baked = scratch().file("plain.crofton");
+        write_contents(obj, "v 0 0 0\nv 0 0 9000\nv 9000 0 9000\nv 9000 0 0\nf 1 2 3 4\n");
+        REQUIRE(run_cli("bake '" + obj + "' --unit 0.01 -o '" + baked + "'").status == 0);
+        for (const std::string& scene : {"'" + obj + "' --unit 0.01", "'" + baked + "'"}) {
+            const CliRun run = run_cli("frames --no-draw --frames 3 --camera street " + scene);
+            CHECK(run.status == 0);
+            CHECK(run.err == "");
+        }
+        CHECK(run_cli("frames --no-draw --frames 1 '" + obj + "' --unit 0").status == 2);
+        CHECK(tells(run_cli("frames --no-draw --frames 1 town --unit 0.01").err, "town: is in metres"));
+    }
+
     TEST_CASE("a disk without room leaves the old file, and the exit status says so") {
         const std::string folder = fresh_folder("full");
         const std::string out = folder + "/room.crofton";

@@ -47,10 +47,10 @@ struct Model {
     void scale(float factor) {
         for (glm::vec3& p : mesh.positions) p *= factor;
     }
-    assets::SceneSource source(bool in_metres = true) const {
+    assets::SceneSource source(double unit = 1.0) const {
         assets::SceneSource result;
         result.name = "model";
-        result.in_metres = in_metres;
+        result.unit = unit;
         const auto node = result.scene.add_node(scene::kNone, {});
         REQUIRE(result.scene.add_instance(*node, *result.scene.add_mesh(mesh)).has_value());
         result.scene.update();
@@ -242,21 +242,32 @@ TEST_SUITE("pipeline/street") {
             }
     }
 
-    TEST_CASE("solid houses on the ground are walked around, not through") {
-        std::mt19937 random(5);
-        Model model;
-        model.quad({0, 0, 0}, {0, 0, 90}, {90, 0, 90}, {90, 0, 0});
-        for (int i = 0; i < 5; ++i)
-            for (int j = 0; j < 5; ++j) {
-                const float x = 4.0f + 17.0f * static_cast<float>(i), z = 4.0f + 17.0f * static_cast<float>(j),
-                            high = 4.0f + static_cast<float>(random() % 8);
-                model.box({x, 0, z}, {x + 11, high, z + 11});
-            }
-        const Walked walked = walk_through(model.source());
-        check_person(walked);
-        CHECK(walked.under_roof == 0);
-        CHECK(walked.length > 60.0);
-        for (const glm::dvec3& eye : walked.eyes) CHECK(eye.y == doctest::Approx(kEye).epsilon(1e-3));
+    TEST_CASE("solid houses on the ground are walked around, not through, at a person's height in any unit") {
+        const auto houses = [](double unit) {
+            std::mt19937 random(5);
+            Model model;
+            model.quad({0, 0, 0}, {0, 0, 90}, {90, 0, 90}, {90, 0, 0});
+            for (int i = 0; i < 5; ++i)
+                for (int j = 0; j < 5; ++j) {
+                    const float x = 4.0f + 17.0f * static_cast<float>(i), z = 4.0f + 17.0f * static_cast<float>(j),
+                                high = 4.0f + static_cast<float>(random() % 8);
+                    model.box({x, 0, z}, {x + 11, high, z + 11});
+                }
+            model.scale(static_cast<float>(1.0 / unit));
+            return model;
+        };
+        const auto check = [&](double unit, bool is_known) {
+            CAPTURE(unit);
+            CAPTURE(is_known);
+            const Walked walked = walk_through(houses(unit).source(is_known ? unit : 0.0));
+            CHECK((walked.remark == "") == (is_known || unit == 1.0));
+            if (walked.remark != "") CHECK(walked.remark.find("--unit") != std::string::npos);
+            CHECK(walked.under_roof == 0);
+            CHECK(walked.length * unit > 60.0);
+            for (const glm::dvec3& eye : walked.eyes) CHECK(eye.y * unit == doctest::Approx(kEye).epsilon(1e-3));
+        };
+        for (const double unit : {1.0, 0.01, 0.001, 0.3048, 0.0254, 1000.0}) check(unit, true);
+        for (const double unit : {1.0, 0.01, 0.001}) check(unit, false);  // by the houses' height
     }
 
     TEST_CASE(
@@ -268,7 +279,7 @@ TEST_SUITE("pipeline/street") {
             const glm::vec3 whole{size, 0.35f * size, 0.75f * size};
             room.box({0, 0, 0}, whole, true);
             room.box(glm::vec3(0.4f, 0.0f, 0.4f) * whole, glm::vec3(0.6f, 0.3f, 0.6f) * whole);
-            const Walked walked = walk_through(room.source(size == 0.5f));
+            const Walked walked = walk_through(room.source(size == 0.5f ? 1.0 : 0.0));
             CHECK(walked.remark.find("no place for a person") != std::string::npos);
             CHECK((walked.remark.find("if lengths are metres") == std::string::npos) == (size == 0.5f));
             CHECK(walked.remark.find("by its rooms' height of") != std::string::npos);
