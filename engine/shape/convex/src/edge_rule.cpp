@@ -15,7 +15,8 @@ namespace {
 constexpr std::uint32_t kNoCorner = ~std::uint32_t{0};
 constexpr std::int8_t kUnknownSide = 2;
 
-// The vertices of a triangle that are farthest along a direction.
+// V, the vertices of a triangle that are farthest along a direction: from the farthest on, each that is not below one
+// of V. Vertices that are equally far but for rounding come in any order: V is the same.
 struct FarthestCorners {
     std::size_t corner[3];
     int count = 0;
@@ -25,31 +26,39 @@ bool rises(const glm::dvec3& d, const glm::dvec3& way, double sine) {
     return along > 0.0 && along * along > sine * sine * glm::dot(way, way);
 }
 FarthestCorners farthest_along(const Triangle& t, const glm::dvec3& d) {
-    std::size_t best = 0;
-    for (std::size_t k = 1; k < 3; ++k)
-        if (glm::dot(d, t[k] - t[best]) > 0.0) best = k;
+    const double along[3] = {0.0, glm::dot(d, t[1] - t[0]), glm::dot(d, t[2] - t[0])};
+    std::size_t order[3] = {0, 1, 2};
+    const auto sort = [&](std::size_t i, std::size_t j) {
+        if (along[order[i]] < along[order[j]]) std::swap(order[i], order[j]);
+    };
+    sort(0, 1), sort(1, 2), sort(0, 1);
     FarthestCorners result;
-    result.corner[result.count++] = best;
-    for (std::size_t k = 0; k < 3; ++k)
-        if (k != best && !rises(d, t[best] - t[k], kFlatSine)) result.corner[result.count++] = k;
+    for (const std::size_t k : order) {
+        bool is_below = false;
+        for (int i = 0; i < result.count; ++i) is_below = is_below || rises(d, t[result.corner[i]] - t[k], kFlatSine);
+        if (!is_below) result.corner[result.count++] = k;
+    }
     return result;
 }
 
-// The vertices of a triangle that are farthest along a direction, as a neighbor knows them.
+// V, as a neighbor knows them.
 struct Stand {
     const Triangle& own;
     FarthestCorners on;
     glm::dvec3 direction;
 
-    [[nodiscard]] const glm::dvec3& vertex() const { return own[on.corner[0]]; }
+    [[nodiscard]] const glm::dvec3& vertex(int k = 0) const { return own[on.corner[k]]; }
     [[nodiscard]] bool is_shared_by(const Triangle& t) const {
         for (int k = 0; k < on.count; ++k)
-            if (std::find(t.begin(), t.end(), own[on.corner[k]]) == t.end()) return false;
+            if (std::find(t.begin(), t.end(), vertex(k)) == t.end()) return false;
         return true;
     }
+    // Measured from each of V: from one end of a long edge a corner may seem flat that rises as seen from the other.
     [[nodiscard]] bool is_below(const Triangle& t) const {
-        return std::any_of(t.begin(), t.end(),
-                           [&](const glm::dvec3& p) { return rises(direction, p - vertex(), kFlatSine); });
+        return std::any_of(t.begin(), t.end(), [&](const glm::dvec3& p) {
+            return rises(direction, p - vertex(), kFlatSine) ||
+                   (on.count > 1 && rises(direction, p - vertex(1), kFlatSine));
+        });
     }
 };
 

@@ -209,12 +209,18 @@ class Manifolds {
 // degrees of its manifold's, which is that of its deepest point, and no two manifolds agree as well. Each depth is
 // along its own part's normal.
 //
-// On the edges and vertices of a surface the internal-edge rule holds: if a contact's normal would point into the
-// neighbouring surface, the triangle pushes along its face's normal. A shape that slides over a floor of many triangles
-// therefore touches only the floor. If this leaves a shape that overlaps the surface without any point, each triangle
-// that it meets pushes along its face's normal, by as much as the shape reaches below the triangle. Between triangles
-// of two surfaces the second surface's rule holds. Triangles of a shape are neighbours if they share vertices of equal
-// position.
+// On the edges and vertices of a surface the internal-edge rule holds. Let n be the direction in which a triangle
+// touches the shape. One corner is above another if it is farther along n by more than 1e-3 of their distance. V are
+// the triangle's farthest corners: from the farthest on, each that none of V is above. n belongs to the surface if it
+// is the face's normal (the sine is at most 1e-3), if V are all three corners, or if no triangle with all of V has a
+// corner above one of V. Triangles with vertices of equal position share them.
+//
+// Each triangle within the margin whose n belongs to the surface has its points, so two that share the edge below a
+// shape have one point each. If n points into the neighbouring surface, the triangle pushes along its face's normal
+// what lies straight above it; a sphere that it touches by an edge or a vertex does not. A shape that slides over a
+// floor of many triangles therefore touches only the floor. If this leaves a shape that overlaps the surface without
+// any point, each triangle that it meets pushes along its face's normal, by as much as the shape reaches below the
+// triangle. Between triangles of two surfaces the second surface's rule holds.
 //
 // Convex children of compounds that overlap or are flush, within 2^-22 of their size, touch as their union does: a
 // contact that its neighbours cover is replaced by one that separates the pair as well, or by the least deep face that
