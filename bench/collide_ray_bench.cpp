@@ -17,6 +17,10 @@
 #include "collide_inputs.hpp"
 #include "simd_target.hpp"
 
+#if defined(CROFTON_BENCH_ASSETS)
+#include "assets/flat_scene.hpp"
+#endif
+
 #if defined(CROFTON_HAVE_EMBREE)
 #include <embree3/rtcore.h>
 #endif
@@ -114,16 +118,27 @@ TriangleMesh in_four(const TriangleMesh& mesh) {
     return result;
 }
 
-// "NAME in four" is the shared mesh NAME with four times the triangles.
+// The samples' town, its triangles without common vertices.
+TriangleMesh town() {
+    TriangleMesh mesh;
+#if defined(CROFTON_BENCH_ASSETS)
+    auto source = assets::load_scene("town");
+    source->scene.update();
+    mesh = assets::flat_scene(*source).value().mesh;
+#endif
+    return mesh;
+}
+
+// "NAME in four" is the shared mesh NAME with four times the triangles, "in sixteen" with sixteen times as many.
 const TriangleMesh& mesh_of(const char* name) {
     static std::map<std::string, TriangleMesh> meshes;
     const auto [place, is_new] = meshes.try_emplace(name);
     if (!is_new) return place->second;
-    const std::string_view whole = name, part = " in four";
-    if (whole.ends_with(part))
-        place->second = in_four(shared_mesh(std::string(whole.substr(0, whole.size() - part.size()))));
-    else
-        place->second = shared_mesh(name);
+    const std::string whole = name;
+    const std::size_t part = whole.find(" in ");
+    place->second = whole == "town" ? town() : shared_mesh(whole.substr(0, part));
+    if (part != std::string::npos) place->second = in_four(place->second);
+    if (whole.ends_with(" in sixteen")) place->second = in_four(place->second);
     return place->second;
 }
 
@@ -178,13 +193,16 @@ void many_rays(benchmark::State& state, const char* name, RayMaker make, std::si
     count_rays(state, rays.size(), hits);
 }
 
+// The tree and its hierarchy for rays.
+void ray_build(benchmark::State& state, const char* name) {
+    const TriangleMesh& mesh = mesh_of(name);
+    if (mesh.indices.empty()) return state.SkipWithError("shared data is absent");
+    for (auto _ : state) benchmark::DoNotOptimize(mesh::MeshTree::build(mesh, {.rays = true}).value());
+}
+
 #if defined(CROFTON_HAVE_EMBREE)
 
-RTCScene embree_scene(const char* name) {
-    static std::map<std::string, RTCScene> scenes;
-    const auto [place, is_new] = scenes.try_emplace(name);
-    if (!is_new) return place->second;
-    const TriangleMesh& mesh = mesh_of(name);
+RTCScene build_embree_scene(const TriangleMesh& mesh) {
     // On the instruction set that ours is restricted to.
     static const bool avx2 = std::string_view(target_in_use()) == "AVX2";
     static const RTCDevice device = rtcNewDevice(avx2 ? "threads=1,isa=avx2" : "threads=1");
@@ -199,8 +217,36 @@ RTCScene embree_scene(const char* name) {
     std::copy(mesh.indices.begin(), mesh.indices.end(), static_cast<std::uint32_t*>(indices));
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene, geometry);
+    rtcReleaseGeometry(geometry);
     rtcCommitScene(scene);
-    return place->second = scene;
+    return scene;
+}
+
+RTCScene embree_scene(const char* name) {
+    static std::map<std::string, RTCScene> scenes;
+    const auto [place, is_new] = scenes.try_emplace(name);
+    if (is_new) place->second = build_embree_scene(mesh_of(name));
+    return place->second;
+}
+
+void embree_build(benchmark::State& state, const char* name) {
+    if (mesh_of(name).indices.empty()) return state.SkipWithError("shared data is absent");
+    for (auto _ : state) rtcReleaseScene(build_embree_scene(mesh_of(name)));
+}
+
+RTCRay embree_ray(const Ray& ray) {
+    return {float(ray.origin.x),
+            float(ray.origin.y),
+            float(ray.origin.z),
+            0.0f,
+            float(ray.direction.x),
+            float(ray.direction.y),
+            float(ray.direction.z),
+            0.0f,
+            INFINITY,
+            ~0u,
+            0,
+            0};
 }
 
 void embree_rays(benchmark::State& state, const char* name, RayMaker make, std::size_t count) {
@@ -214,21 +260,28 @@ void embree_rays(benchmark::State& state, const char* name, RayMaker make, std::
             RTCIntersectContext context;
             rtcInitIntersectContext(&context);
             RTCRayHit query{};
-            query.ray = {float(ray.origin.x),
-                         float(ray.origin.y),
-                         float(ray.origin.z),
-                         0.0f,
-                         float(ray.direction.x),
-                         float(ray.direction.y),
-                         float(ray.direction.z),
-                         0.0f,
-                         INFINITY,
-                         ~0u,
-                         0,
-                         0};
+            query.ray = embree_ray(ray);
             query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
             rtcIntersect1(scene, &context, &query);
             hits += query.hit.geomID != RTC_INVALID_GEOMETRY_ID;
+        }
+    }
+    count_rays(state, rays.size(), hits);
+}
+
+void embree_any_hits(benchmark::State& state, const char* name, RayMaker make, std::size_t count) {
+    if (mesh_of(name).indices.empty()) return state.SkipWithError("shared data is absent");
+    const RTCScene scene = embree_scene(name);
+    const auto rays = make(mesh_of(name), count);
+    int hits = 0;
+    for (auto _ : state) {
+        hits = 0;
+        for (const Ray& ray : rays) {
+            RTCIntersectContext context;
+            rtcInitIntersectContext(&context);
+            RTCRay query = embree_ray(ray);
+            rtcOccluded1(scene, &context, &query);
+            hits += query.tfar < 0.0f;
         }
     }
     count_rays(state, rays.size(), hits);
@@ -287,9 +340,14 @@ void embree_packets(benchmark::State& state, const char* name, RayMaker make, st
 #endif
 
 void ray_benchmarks() {
-    for (const char* mesh : {"bunny", "armadillo", "armadillo in four"})
+    for (const char* mesh : {"bunny", "armadillo", "armadillo in four", "bunny in sixteen", "town"}) {
+        const std::string build = std::string("ray build/") + mesh + "/";
+        benchmark::RegisterBenchmark((build + "crofton").c_str(), ray_build, mesh)->Unit(benchmark::kMillisecond);
+#if defined(CROFTON_HAVE_EMBREE)
+        benchmark::RegisterBenchmark((build + "embree").c_str(), embree_build, mesh)->Unit(benchmark::kMillisecond);
+#endif
         for (const auto& kind : kKinds)
-            for (const std::size_t count : {std::size_t{256}, std::size_t{20'000}}) {
+            for (const std::size_t count : {std::size_t{256}, std::size_t{20'000}, std::size_t{100'000}}) {
                 const std::string name =
                     std::string("rays/") + mesh + " " + kind.name + " " + std::to_string(count) + "/";
                 benchmark::RegisterBenchmark((name + "crofton").c_str(), single_rays, mesh, kind.make, count, true)
@@ -297,10 +355,13 @@ void ray_benchmarks() {
                 benchmark::RegisterBenchmark((name + "not prepared").c_str(), single_rays, mesh, kind.make, count,
                                              false)
                     ->Unit(benchmark::kMicrosecond);
-                benchmark::RegisterBenchmark((name + "any hit").c_str(), any_hits, mesh, kind.make, count)
+                benchmark::RegisterBenchmark(("any " + name + "crofton").c_str(), any_hits, mesh, kind.make, count)
                     ->Unit(benchmark::kMicrosecond);
 #if defined(CROFTON_HAVE_EMBREE)
                 benchmark::RegisterBenchmark((name + "embree").c_str(), embree_rays, mesh, kind.make, count)
+                    ->Unit(benchmark::kMicrosecond);
+                benchmark::RegisterBenchmark(("any " + name + "embree").c_str(), embree_any_hits, mesh, kind.make,
+                                             count)
                     ->Unit(benchmark::kMicrosecond);
 #endif
                 const std::string many = "many " + name;
@@ -316,6 +377,7 @@ void ray_benchmarks() {
                     ->Unit(benchmark::kMicrosecond);
 #endif
             }
+    }
 }
 const bool registered = (ray_benchmarks(), true);
 

@@ -85,6 +85,8 @@ function(crofton_module)
         set_source_files_properties(${ARG_HOT} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
         set_property(SOURCE ${ARG_HOT} APPEND PROPERTY COMPILE_OPTIONS ${CROFTON_KERNEL_OPTIONS})
     endif()
+    # So that a program that is linked with -Wl,--gc-sections has only the functions that it may call.
+    target_compile_options(${target} PRIVATE "$<$<NOT:$<CXX_COMPILER_ID:MSVC>>:-ffunction-sections;-fdata-sections>")
     # Exceptions serve core/recovery.hpp alone: a failed allocation unwinds to the public function, which returns an Error.
     target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-fno-rtti>)
     target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>

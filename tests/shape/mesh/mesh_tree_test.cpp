@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 #include <hwy/targets.h>
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <crofton/mesh/mesh_distance.hpp>
 #include <crofton/mesh/mesh_parts.hpp>
@@ -181,6 +182,41 @@ TEST_SUITE("mesh/mesh_tree") {
         int deepest = 0;
         walk(*tree, 0, 1, seen, deepest, mesh);
         CHECK(deepest <= 6);
+    }
+
+    TEST_CASE("positions that all want one place of the table are still told apart") {
+        // As mesh_pieces.cpp places 3 · 150 vertices.
+        constexpr std::size_t kTriangles = 150;
+        const auto place_of = [](const glm::vec3& p) {
+            const std::uint64_t xy =
+                std::bit_cast<std::uint32_t>(p.x) | std::uint64_t{std::bit_cast<std::uint32_t>(p.y)} << 32;
+            const std::uint64_t mixed = xy * 0x9e3779b97f4a7c15u + std::bit_cast<std::uint32_t>(p.z);
+            return ((mixed ^ (mixed >> 29)) * 0xbf58476d1ce4e5b9u) >> 54;
+        };
+        std::mt19937_64 random(8);
+        std::vector<glm::vec3> places;
+        while (places.size() < 6 * kTriangles)
+            if (const glm::vec3 p(random_vector(random)); place_of(p) == 5) places.push_back(p);
+        TriangleMesh mesh;
+        for (std::uint32_t v = 0; v < 3 * kTriangles; ++v) {
+            mesh.indices.push_back(v);
+            mesh.positions.push_back(places[random() % places.size()]);
+        }
+        // Oracle: each triangle takes the lowest number of all that it shares a position with, until nothing changes.
+        std::vector<std::size_t> piece(kTriangles);
+        for (std::size_t t = 0; t < kTriangles; ++t) piece[t] = t;
+        for (bool changed = true; changed;) {
+            changed = false;
+            for (std::size_t v = 0; v < 3 * kTriangles; ++v)
+                for (std::size_t w = 0; w < 3 * kTriangles; ++w)
+                    if (mesh.positions[v] == mesh.positions[w] && piece[w / 3] < piece[v / 3])
+                        piece[v / 3] = piece[w / 3], changed = true;
+        }
+        std::size_t expected = 0;
+        for (std::size_t t = 0; t < kTriangles; ++t) expected += piece[t] == t;
+        CHECK(expected > 3);
+        CHECK(expected < kTriangles);
+        CHECK(MeshTree::build(mesh)->pieces().size() == expected);
     }
 
     TEST_CASE("the same mesh gives the same tree") {

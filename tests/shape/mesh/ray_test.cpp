@@ -241,6 +241,46 @@ TEST_SUITE("mesh/ray") {
         hwy::SetSupportedTargetsForTest(0);
     }
 
+    TEST_CASE("packets at triangles that all their rays come to: as alone, on every instruction set") {
+        std::mt19937_64 random(32);
+        TriangleMesh shreds = wavy_torus(1.0, 0.4, 0.2, 7, 5);  // large triangles, and larger ones across them
+        for (int t = 0; t < 40; ++t)
+            for (int v = 0; v < 3; ++v) {
+                shreds.indices.push_back(static_cast<std::uint32_t>(shreds.positions.size()));
+                shreds.positions.push_back(glm::vec3(1.5 * random_vector(random)));
+            }
+        for (int t = 0; t < 60; ++t)  // two and more in one place
+            shreds.indices.push_back(shreds.indices[shreds.indices.size() - 120]);
+        const auto tree = mesh::MeshTree::build(shreds, {.rays = true});
+        std::vector<Ray> rays;
+        for (int packet = 0; packet < 600; ++packet) {
+            const glm::dvec3 eye = packet % 3 == 0 ? glm::dvec3(4.0) : 4.0 * random_vector(random);
+            const std::size_t t = random() % shreds.triangle_count();
+            // At an inner point, a point of an edge, a vertex; or along the diagonal of all axes.
+            const double a = packet % 4 == 1 ? 0.0 : 0.3, b = packet % 4 == 2 ? 0.0 : 0.2;
+            const glm::dvec3 at = vertex(shreds, t, 0) + a * (vertex(shreds, t, 1) - vertex(shreds, t, 0)) +
+                                  b * (vertex(shreds, t, 2) - vertex(shreds, t, 0));
+            const glm::dvec3 way = packet % 12 == 3 ? glm::dvec3(-1.0) : at - eye;
+            for (std::size_t i = 0; i < 16; ++i) {
+                Ray ray{eye, way};
+                if (i % 4 != 0) ray.direction += 1e-3 * random_vector(random);
+                if (packet % 5 == 1) ray.origin += 1e-2 * random_vector(random);
+                if (packet % 5 == 2) ray.max_t = i % 3 == 0 ? 1.0 : 0.5 + 0.1 * static_cast<double>(i);
+                if (packet % 7 == 1) ray.direction *= packet % 2 == 0 ? 1e-20 : 3.0;
+                rays.push_back(ray);
+            }
+        }
+        std::vector<std::optional<TriangleHit>> alone, hits(rays.size());
+        for (const Ray& ray : rays) alone.push_back(raycast(ray, *tree));
+        CHECK(std::count_if(alone.begin(), alone.end(), [](const auto& hit) { return hit.has_value(); }) > 4000);
+        for (std::int64_t rest = hwy::SupportedTargets(); rest != 0; rest &= rest - 1) {
+            hwy::SetSupportedTargetsForTest(rest & -rest);
+            raycast(rays, *tree, hits);
+            CHECK(std::equal(hits.begin(), hits.end(), alone.begin(), are_same));
+        }
+        hwy::SetSupportedTargetsForTest(0);
+    }
+
     TEST_CASE("a closed mesh has no leaks: rays from inside always hit") {
         std::mt19937_64 random(4);
         const auto tree = mesh::MeshTree::build(wavy_torus(0.6, 0.59, 0.0, 16, 16));

@@ -7,13 +7,12 @@
 #include <crofton/geometry/float_lanes.hpp>
 #include <glm/common.hpp>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 namespace crofton::mesh {
 namespace {
 
-// A box as four floats at a time, the fourth of which is never read.
+// A box as four floats at a time. The fourth ones are no part of it.
 struct WideBox {
     detail::Lanes4 low = detail::all_lanes(std::numeric_limits<float>::infinity());
     detail::Lanes4 high = detail::all_lanes(-std::numeric_limits<float>::infinity());
@@ -37,6 +36,13 @@ struct WideBox {
     return d[0] >= 0.0 ? d[0] * d[1] + d[1] * d[2] + d[2] * d[0] : 0.0;
 }
 
+// An item's number lies with its box, in the fourth float. With this bit it is no denormal number, which some
+// processors multiply slowly.
+constexpr std::uint32_t kItemBit = 0x40000000u;
+[[nodiscard]] std::uint32_t number_of(const WideBox& item) {
+    return std::bit_cast<std::uint32_t>(static_cast<float>(item.low[3])) & ~kItemBit;
+}
+
 constexpr std::size_t kWidth = kBoxNodeWidth;
 constexpr std::size_t kBins = 16;
 // From this depth on ranges are halved by number: 2^30 triangles then need no more than 30 further levels.
@@ -45,6 +51,7 @@ constexpr int kMaxUnevenDepth = 30;
 struct BoxRange {
     std::uint32_t begin = 0, end = 0;
     int depth = 0;
+    bool second = false;  // where its items are: in the second array
     WideBox box, middles;
     [[nodiscard]] std::uint32_t size() const { return end - begin; }
     void include(const WideBox& item) {
@@ -86,15 +93,13 @@ FloatBox narrow(const WideBox& box) {
 class Splitter {
   public:
     Splitter(std::span<const FloatBox> boxes, std::uint32_t leaf_size, std::uint32_t granule)
-        : leaf_size_(leaf_size),
-          granule_(granule),
-          items_(boxes.size()),
-          others_(boxes.size()),
-          order_(boxes.size()),
-          other_order_(boxes.size()) {
-        std::iota(order_.begin(), order_.end(), 0u);
-        for (std::size_t i = 0; i < boxes.size(); ++i)
-            for (int k = 0; k < 3; ++k) items_[i].low[k] = boxes[i].low[k], items_[i].high[k] = boxes[i].high[k];
+        : leaf_size_(leaf_size), granule_(granule), order_(boxes.size()) {
+        for (Vector<WideBox>& items : items_) items.resize(boxes.size());
+        for (std::size_t i = 0; i < boxes.size(); ++i) {
+            WideBox& item = items_[0][i];
+            for (int k = 0; k < 3; ++k) item.low[k] = boxes[i].low[k], item.high[k] = boxes[i].high[k];
+            item.low[3] = std::bit_cast<float>(static_cast<std::uint32_t>(i) | kItemBit);
+        }
     }
 
     Vector<BinaryNode> split() {
@@ -108,7 +113,10 @@ class Splitter {
         const auto add = [&](const BoxRange& range) {
             const auto node = static_cast<std::uint32_t>(nodes.size());
             nodes.push_back({range.box, range.begin, range.end});
-            if (range.size() > leaf_size_) stack.push_back({range, node});
+            if (range.size() > leaf_size_)
+                stack.push_back({range, node});
+            else
+                for (std::uint32_t i = range.begin; i < range.end; ++i) order_[i] = number_of(items_of(range)[i]);
         };
         add(whole());
         while (!stack.empty()) {
@@ -126,15 +134,16 @@ class Splitter {
     Vector<std::uint32_t> take_order() { return std::move(order_); }
 
   private:
+    [[nodiscard]] const WideBox* items_of(const BoxRange& range) const { return items_[range.second ? 1 : 0].data(); }
+
     BoxRange whole() const {
         BoxRange range;
         range.end = static_cast<std::uint32_t>(order_.size());
-        for (const WideBox& item : items_) range.include(item);
+        for (const WideBox& item : items_[0]) range.include(item);
         return range;
     }
 
-    // Within a range items ascend, before and after: so the tree does not depend on how a library sorts. Boxes move
-    // with their items: what is split further lies side by side.
+    // Within a range items ascend, before and after: so the tree does not depend on how a library sorts.
     void split(const BoxRange& range, BoxRange& left, BoxRange& right) {
         left = right = BoxRange();
         left.begin = range.begin, right.end = range.end;
@@ -147,9 +156,10 @@ class Splitter {
         } else if (best_plane(range, plane)) {
             const std::uint32_t cut = whole_granules(range.size(), plane.below);
             if (cut == plane.below || cost_of_moving(range, plane, cut) > kDearer * plane.cost)
-                part(range, left, right, [&](std::uint32_t i) { return !plane.is_above(items_[i]); });
+                part(range, plane.below, left, right,
+                     [&](std::uint32_t, const WideBox& item) { return !plane.is_above(item); });
             else
-                part_at(range, left, right, plane.axis, near_.back());
+                part_at(range, cut, left, right, plane.axis, near_.back().middle);
         } else {
             part_by_number(range, left, right);
         }
@@ -164,10 +174,15 @@ class Splitter {
     // An item's middle along an axis. No two are equal.
     struct Middle {
         float at;
-        std::uint32_t item, place;
+        std::uint32_t item;
         friend bool operator<(const Middle& a, const Middle& b) {
             return a.at < b.at || (a.at == b.at && a.item < b.item);
         }
+    };
+    static Middle middle_of(const WideBox& item, int axis) { return {item.middle(axis), number_of(item)}; }
+    struct PlacedMiddle {
+        Middle middle;
+        std::uint32_t place;
     };
 
     // What the split costs if not `plane.below` but `cut` items are to be below. Those that change sides are next to
@@ -177,18 +192,21 @@ class Splitter {
         near_.clear();
         const std::size_t count = up ? cut - plane.below : plane.below - cut + 1;
         const float farthest = farthest_bin(plane, up, count);
+        const WideBox* const items = items_of(range);
         for (std::uint32_t i = range.begin; i < range.end; ++i) {
-            const float bin = plane.bin_of(items_[i]);
+            const float bin = plane.bin_of(items[i]);
             const bool too_far = up ? bin >= farthest + 1.0f : bin < farthest;
             if (((bin >= plane.border) != up) | too_far) continue;
-            const Middle middle{items_[i].middle(plane.axis), order_[i], i};
-            const auto nearer = [up](const Middle& a, const Middle& b) { return up ? a < b : b < a; };
+            const PlacedMiddle middle{middle_of(items[i], plane.axis), i};
+            const auto nearer = [up](const PlacedMiddle& a, const PlacedMiddle& b) {
+                return up ? a.middle < b.middle : b.middle < a.middle;
+            };
             if (near_.size() == count && !nearer(middle, near_.back())) continue;
             if (near_.size() == count) near_.pop_back();
             near_.insert(std::upper_bound(near_.begin(), near_.end(), middle, nearer), middle);
         }
         WideBox below = plane.boxes[0], above = plane.boxes[1];
-        for (std::size_t i = 0; i < (up ? count : count - 1); ++i) (up ? below : above).include(items_[near_[i].place]);
+        for (std::size_t i = 0; i < (up ? count : count - 1); ++i) (up ? below : above).include(items[near_[i].place]);
         return half_area(below) * granules(cut) + half_area(above) * granules(range.size() - cut);
     }
 
@@ -202,30 +220,29 @@ class Splitter {
         return outermost ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(bin);
     }
 
-    // Those that are left first.
+    // Those that are left first: as many as lie below the cut. They go to the other array.
     template <class IsLeft>
-    void part(const BoxRange& range, BoxRange& left, BoxRange& right, const IsLeft& is_left) {
-        std::uint32_t cut = range.begin, others = 0;
+    void part(const BoxRange& range, std::uint32_t cut, BoxRange& left, BoxRange& right, const IsLeft& is_left) {
+        const WideBox* const from = items_of(range);
+        WideBox* const to = items_[range.second ? 0 : 1].data();
+        left.second = right.second = !range.second;
+        left.end = right.begin = range.begin + cut;
+        std::uint32_t next_left = range.begin, next_right = right.begin;
         for (std::uint32_t i = range.begin; i < range.end; ++i) {
-            const bool to_left = is_left(i);
-            const WideBox item = items_[i];
-            const std::uint32_t t = order_[i];
-            items_[cut] = others_[others] = item;
-            order_[cut] = other_order_[others] = t;
-            cut += to_left;
-            others += !to_left;
+            const WideBox item = from[i];
+            const std::uint32_t to_left = is_left(i, item) ? 1 : 0;
+            to[to_left != 0 ? next_left : next_right] = item;
+            next_left += to_left;
+            next_right += 1 - to_left;
         }
-        std::copy_n(others_.begin(), others, items_.begin() + cut);
-        std::copy_n(other_order_.begin(), others, order_.begin() + cut);
-        left.end = right.begin = cut;
-        for (std::uint32_t i = left.begin; i < left.end; ++i) left.include(items_[i]);
-        for (std::uint32_t i = right.begin; i < right.end; ++i) right.include(items_[i]);
+        for (std::uint32_t i = left.begin; i < left.end; ++i) left.include(to[i]);
+        for (std::uint32_t i = right.begin; i < right.end; ++i) right.include(to[i]);
     }
 
-    void part_at(const BoxRange& range, BoxRange& left, BoxRange& right, int axis, const Middle& last) {
-        part(range, left, right, [&](std::uint32_t i) {
-            return !(last < Middle{items_[i].middle(axis), order_[i], i});
-        });
+    void part_at(const BoxRange& range, std::uint32_t cut, BoxRange& left, BoxRange& right, int axis,
+                 const Middle& last) {
+        part(range, cut, left, right,
+             [&](std::uint32_t, const WideBox& item) { return !(last < middle_of(item, axis)); });
     }
 
     // Halves along the longest side.
@@ -235,11 +252,11 @@ class Splitter {
         const int axis = d.x >= d.y && d.x >= d.z ? 0 : (d.y >= d.z ? 1 : 2);
         Vector<Middle> middles;
         middles.reserve(range.size());
-        for (std::uint32_t i = range.begin; i < range.end; ++i)
-            middles.push_back({items_[i].middle(axis), order_[i], i});
-        const auto last = middles.begin() + (whole_granules(range.size(), range.size() / 2) - 1);
+        for (std::uint32_t i = range.begin; i < range.end; ++i) middles.push_back(middle_of(items_of(range)[i], axis));
+        const std::uint32_t cut = whole_granules(range.size(), range.size() / 2);
+        const auto last = middles.begin() + (cut - 1);
         std::nth_element(middles.begin(), last, middles.end());
-        part_at(range, left, right, axis, *last);
+        part_at(range, cut, left, right, axis, *last);
     }
 
     // A number that orders as `at` does to 18 bits of its fraction, and then as `place`: no two are equal.
@@ -264,9 +281,10 @@ class Splitter {
     // The best of all cuts, by the boxes that they leave. A part that does not fill its granules costs as if it did.
     void part_few(const BoxRange& range, BoxRange& left, BoxRange& right) {
         const std::uint32_t count = range.size();
+        const WideBox* const items = items_of(range) + range.begin;
         std::array<std::array<std::int32_t, kMostFew>, 3> order{};
         for (std::uint32_t i = 0; i < count; ++i) {
-            const detail::Lanes4 middle = items_[range.begin + i].middle();
+            const detail::Lanes4 middle = items[i].middle();
             for (int axis = 0; axis < 3; ++axis)
                 order[static_cast<std::size_t>(axis)][i] = rough_order(middle[axis], i);
         }
@@ -277,8 +295,7 @@ class Splitter {
         for (std::size_t axis = 0; axis < 3; ++axis) {
             find_ranks(order[axis].data(), count, ranks[axis].data());
             std::array<WideBox, kMostFew> boxes;
-            for (std::uint32_t i = 0; i < count; ++i)
-                boxes[static_cast<std::size_t>(ranks[axis][i])] = items_[range.begin + i];
+            for (std::uint32_t i = 0; i < count; ++i) boxes[static_cast<std::size_t>(ranks[axis][i])] = items[i];
             std::array<float, kMostFew> cost;
             WideBox below, above;
             for (std::uint32_t cut = 1; cut < count; ++cut) {
@@ -292,8 +309,9 @@ class Splitter {
             }
         }
         if (best == 0.0f) return part_by_number(range, left, right);  // all along one line
-        part(range, left, right,
-             [&](std::uint32_t i) { return ranks[best_axis][i - range.begin] < static_cast<std::int32_t>(best_cut); });
+        part(range, best_cut, left, right, [&](std::uint32_t i, const WideBox&) {
+            return ranks[best_axis][i - range.begin] < static_cast<std::int32_t>(best_cut);
+        });
     }
 
     static float half_area_of(const WideBox& box) {
@@ -359,8 +377,9 @@ class Splitter {
         for (std::size_t i = 0; i < (many ? 6u : 3u); ++i) bins_[i].clear();
         const detail::Lanes4 low = range.middles.low, zero = detail::all_lanes(0.0f);
         const detail::Lanes4 last = detail::all_lanes(static_cast<float>(kBins - 1));
+        const WideBox* const items = items_of(range);
         const auto add = [&](std::uint32_t i, Bins* bins) {
-            const WideBox item = items_[i];
+            const WideBox item = items[i];
             // The scale of a width near the smallest float is infinite: bounded before it becomes an integer.
             const detail::Lanes4 bin = detail::lesser(detail::larger((item.middle() - low) * scale, zero), last);
             for (int axis = 0; axis < 3; ++axis) bins[axis].add(static_cast<std::int32_t>(bin[axis]), item);
@@ -405,9 +424,9 @@ class Splitter {
     static constexpr std::uint32_t kMostFew = 32;
     static constexpr double kDearer = 1.25;  // so much may whole granules cost
     std::uint32_t leaf_size_, granule_;
-    Vector<WideBox> items_, others_;  // their boxes, in order
-    Vector<std::uint32_t> order_, other_order_;
-    Vector<Middle> near_;
+    Vector<WideBox> items_[2];  // a range is in one of them, and its halves in the other
+    Vector<std::uint32_t> order_;
+    Vector<PlacedMiddle> near_;
     // By axis, twice: of many items the odd ones go to the second three. An item waits for the one before it in its
     // bin.
     static constexpr std::uint32_t kManyItems = 128;

@@ -71,34 +71,48 @@ glm::dmat3 principal_axes(std::span<const glm::vec3> points) {
 // A turn by an angle; `half` is the tangent of its half. Nothing is left to a library's sine: the same bits everywhere.
 struct Turn {
     double c = 1.0, s = 0.0;
-    static Turn by(double half) {
+    static constexpr Turn by(double half) {
         return {(1.0 - half * half) / (1.0 + half * half), 2.0 * half / (1.0 + half * half)};
     }
 };
 
-Turn operator*(const Turn& a, const Turn& b) {
+constexpr Turn operator*(const Turn& a, const Turn& b) {
     return {a.c * b.c - a.s * b.s, a.c * b.s + a.s * b.c};
 }
 
-// The best of sixteen angles, the first and the step between them given, for the rectangle around the points.
-Turn best_turn(std::span<const float> u, std::span<const float> v, const Turn& first, const Turn& step) {
-    Turn turns[kAngles];
-    Angles angles;
-    Turn turn = first;
-    for (std::size_t i = 0; i < kAngles; ++i) {
-        turns[i] = turn;
-        angles.cosine[i] = static_cast<float>(turn.c);
-        angles.sine[i] = static_cast<float>(turn.s);
-        turn = turn * step;
+// Sixteen angles, as the kernel takes them too.
+struct Turns {
+    std::array<Turn, kAngles> turns;
+    Angles angles{};
+
+    constexpr Turns() = default;
+    constexpr Turns(Turn turn, const Turn& step) {
+        for (std::size_t i = 0; i < kAngles; ++i) {
+            turns[i] = turn;
+            angles.cosine[i] = static_cast<float>(turn.c);
+            angles.sine[i] = static_cast<float>(turn.s);
+            turn = turn * step;
+        }
     }
-    return turns[least_rectangle(u.data(), v.data(), u.size(), angles)];
-}
+};
+
+// Those of a quarter turn, and those around each of them.
+struct TurnTable {
+    Turns coarse;
+    std::array<Turns, kAngles> fine;
+    constexpr TurnTable() {
+        constexpr double kCoarse = 0.049126849769467254, kFine = 0.006136000157623402;  // tan of half 90°/16, 90°/128
+        coarse = Turns(Turn(), Turn::by(kCoarse));
+        for (std::size_t i = 0; i < kAngles; ++i)
+            fine[i] = Turns(coarse.turns[i] * Turn::by(-kCoarse), Turn::by(kFine));
+    }
+};
+constexpr TurnTable kTurns;
 
 }  // namespace
 
 // Among sixteen angles of a quarter turn, then among sixteen around the best of these.
 void MeshBoxFitter::turn(std::span<const glm::vec3> points, int axis, glm::dmat3& frame) {
-    constexpr double kCoarse = 0.049126849769467254, kFine = 0.006136000157623402;  // tan of half 90°/16, 90°/128
     const glm::dvec3 x = frame[(axis + 1) % 3], y = frame[(axis + 2) % 3];
     const glm::vec3 along(x), across(y), origin = points.front();
     for (std::size_t p = 0; p < points.size(); ++p) {
@@ -106,8 +120,11 @@ void MeshBoxFitter::turn(std::span<const glm::vec3> points, int axis, glm::dmat3
         u_[p] = from.x * along.x + from.y * along.y + from.z * along.z;
         v_[p] = from.x * across.x + from.y * across.y + from.z * across.z;
     }
-    const Turn coarse = best_turn(u_, v_, Turn(), Turn::by(kCoarse));
-    const Turn best = best_turn(u_, v_, coarse * Turn::by(-kCoarse), Turn::by(kFine));
+    const auto best_of = [&](const Angles& angles) {
+        return least_rectangle(u_.data(), v_.data(), points.size(), angles);
+    };
+    const Turns& around = kTurns.fine[best_of(kTurns.coarse.angles)];
+    const Turn& best = around.turns[best_of(around.angles)];
     frame[(axis + 1) % 3] = best.c * x + best.s * y;
     frame[(axis + 2) % 3] = best.c * y - best.s * x;
 }

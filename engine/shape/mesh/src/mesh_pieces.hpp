@@ -24,6 +24,7 @@ struct MeshPieces {
     Vector<std::uint32_t> piece;   // of each triangle asked about
     Vector<WeldedVertex> welds;
     Vector<PartVertex> part_vertices;
+    Vector<std::uint32_t> lowest;  // by vertex: the lowest that it was found to be at one place with
 };
 
 // Triangles are connected where they share a vertex: by index, or by equal position.

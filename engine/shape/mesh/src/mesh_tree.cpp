@@ -8,6 +8,7 @@
 #include <crofton/mesh/mesh_parts.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
 #include <glm/geometric.hpp>
+#include <numeric>
 #include <utility>
 
 #include "box_anchors.hpp"
@@ -91,8 +92,14 @@ class MeshTreeBuilder {
     BoxHierarchy hierarchy_;           // of triangles; its leaves are the bunches
     Vector<Bunch> bunches_;
     Vector<std::uint32_t> leaf_of_;  // by bunch
+    Vector<std::uint32_t> lowest_;   // by vertex, for boxes: one at the same place, or itself
+    struct Vertex {
+        glm::vec3 position;
+        std::uint32_t index;
+    };
     // The vertices of each bunch, one after the other, each once in its bunch; where those of a bunch begin.
-    Vector<std::uint32_t> bunch_vertices_, first_vertex_;
+    Vector<Vertex> bunch_vertices_;
+    Vector<std::uint32_t> first_vertex_;
     Vector<Task> tasks_;
     MeshBoxFitter fitter_;
     Vector<std::uint32_t> piece_of_;  // by triangle
@@ -144,8 +151,8 @@ void MeshTreeBuilder::bunch_triangles() {
         ++range_number_;
         for (const std::uint32_t t : triangles)
             for (std::size_t v = 0; v < 3; ++v)
-                if (const std::uint32_t index = mesh_.indices[3 * std::size_t{t} + v]; is_new(index))
-                    bunch_vertices_.push_back(index);
+                if (const std::uint32_t index = lowest_[mesh_.indices[3 * std::size_t{t} + v]]; is_new(index))
+                    bunch_vertices_.push_back({mesh_.positions[index], index});
     }
     first_vertex_.push_back(static_cast<std::uint32_t>(bunch_vertices_.size()));
     leaf_of_.resize(bunches_.size());
@@ -184,9 +191,9 @@ MeshBox MeshTreeBuilder::fit(const Range& range) {
     point_vertices_.clear();
     for (std::size_t b = range.begin; b < range.end; ++b)
         for (std::uint32_t i = first_vertex_[bunches_[b].number]; i < first_vertex_[bunches_[b].number + 1]; ++i)
-            if (const std::uint32_t index = bunch_vertices_[i]; is_new(index)) {
-                points_.push_back(mesh_.positions[index]);
-                point_vertices_.push_back(index);
+            if (const Vertex& vertex = bunch_vertices_[i]; is_new(vertex.index)) {
+                points_.push_back(vertex.position);
+                if (options_.refittable) point_vertices_.push_back(vertex.index);
             }
     return fitter_.fit(points_, options_.boxes);
 }
@@ -243,6 +250,8 @@ void MeshTreeBuilder::split_node(const Task& task) {
 void MeshTreeBuilder::set_pieces(std::span<const std::uint32_t> triangles) {
     MeshPieces found = find_pieces(mesh_, triangles);
     piece_of_.resize(mesh_.triangle_count());
+    lowest_ = std::move(found.lowest);
+    if (options_.refittable) std::iota(lowest_.begin(), lowest_.end(), 0u);  // they may part
     for (std::size_t t = 0; t < triangles.size(); ++t) piece_of_[triangles[t]] = found.piece[t];
     for (std::size_t p = 0; p < found.vertex.size(); ++p)
         tree_.pieces_.push_back({mesh_.positions[found.vertex[p]], found.closed[p] != 0});

@@ -162,7 +162,7 @@ RayQuery query_of(const Ray& ray, const MeshTree& mesh, bool any) {
     const MeshParts& parts = mesh.parts();
     // Of oriented boxes: the rounding of origin, direction, axes and projections, each at most 2^-24 relative, at any
     // point the mesh can reach. The derivations of the others are with AlignedBoxes and candidates().
-    const double relative_error = parts.ray_nodes.empty() ? 4e-6 : 7.5e-7;
+    const double relative_error = parts.ray_nodes.empty() ? 4e-6 : kRayError;
     query.error_bound = static_cast<float>(relative_error * (static_cast<double>(mesh.extent()) + far));
     query.nodes = parts.ray_nodes.data();
     query.mesh_nodes = parts.nodes.data();

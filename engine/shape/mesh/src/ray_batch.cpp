@@ -1,48 +1,45 @@
 // SPDX-License-Identifier: MIT
 // Tests many rays against one mesh, sixteen at a time.
 #include <algorithm>
-#include <cmath>
 #include <crofton/mesh/mesh_parts.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
-#include <glm/common.hpp>
 
 #include "ray_mesh.hpp"
 
 namespace crofton::mesh {
 namespace {
 
-// Whether a packet is worth it, of valid rays: they leave from nearly one place into nearly one direction, of equal
-// signs. Rays that part soon are slower in a packet, as it visits what any of them does.
-bool lie_together(std::span<const Ray> rays, double extent) {
-    const Ray& first = rays[0];
-    const glm::dvec3 size = glm::abs(first.direction);
-    const double length = std::max({size.x, size.y, size.z});
-    if (!(length > 1e-100 && length < 1e100)) return false;
-    for (const Ray& ray : rays) {
-        bool together = ray.max_t >= 0.0;
+RayPacket packet_of(std::span<const Ray> rays) {
+    RayPacket packet;
+    packet.count = static_cast<std::uint32_t>(rays.size());
+    for (std::size_t r = 0; r < kRayPacketWidth; ++r) {
+        const Ray& ray = rays[r < rays.size() ? r : 0];
         for (int i = 0; i < 3; ++i) {
-            together &= std::signbit(ray.direction[i]) == std::signbit(first.direction[i]);
-            together &= std::abs(ray.direction[i] - first.direction[i]) <= 0.1 * length;
-            together &= std::abs(ray.origin[i] - first.origin[i]) <= 0.0625 * extent;
+            packet.origin[i][r] = ray.origin[i];
+            packet.direction[i][r] = ray.direction[i];
         }
-        if (!together) return false;
+        packet.max_t[r] = ray.max_t;
     }
-    return rays.size() > 2;
+    return packet;
 }
 
-void cast_packet(std::span<const Ray> rays, const MeshTree& mesh, std::optional<TriangleHit>* hits) {
-    RayQuery queries[kRayPacketWidth];
-    RayAnswer answers[kRayPacketWidth];
-    for (std::size_t r = 0; r < rays.size(); ++r) queries[r] = query_of(rays[r], mesh, false);
+bool cast_packet(std::span<const Ray> rays, const MeshTree& mesh, std::optional<TriangleHit>* hits) {
+    const auto query = [&](std::uint32_t ray) { return query_of(rays[ray], mesh, false); };
     const auto exact = [&](std::uint32_t ray, std::uint32_t leaf, std::uint32_t lane) {
         return meets(rays[ray], mesh, leaf, lane);
     };
-    trace_packet(std::span<const RayQuery>(queries, rays.size()), exact, std::span<RayAnswer>(answers, rays.size()));
+    RayAnswer answers[kRayPacketWidth];
+    const MeshParts& parts = mesh.parts();
+    if (!trace_packet(packet_of(rays),
+                      {parts.ray_nodes.data(), parts.leaves.data(), static_cast<double>(mesh.extent()), query, exact},
+                      answers))
+        return false;
     for (std::size_t r = 0; r < rays.size(); ++r) {
         hits[r] = std::nullopt;
         if (answers[r].hit) hits[r] = TriangleHit{answers[r].t, answers[r].triangle};
     }
+    return true;
 }
 
 }  // namespace
@@ -53,10 +50,8 @@ void raycast(std::span<const Ray> rays, const MeshTree& mesh, std::span<std::opt
     for (std::size_t begin = 0; begin < rays.size(); begin += kRayPacketWidth) {
         const std::size_t end = std::min(rays.size(), begin + kRayPacketWidth);
         const std::span<const Ray> some = rays.subspan(begin, end - begin);
-        if (prepared && lie_together(some, static_cast<double>(mesh.extent())))
-            cast_packet(some, mesh, hits.data() + begin);
-        else
-            for (std::size_t r = begin; r < end; ++r) hits[r] = raycast(rays[r], mesh);
+        if (prepared && some.size() > 2 && cast_packet(some, mesh, hits.data() + begin)) continue;
+        for (std::size_t r = begin; r < end; ++r) hits[r] = raycast(rays[r], mesh);
     }
 }
 

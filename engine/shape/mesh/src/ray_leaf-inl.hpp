@@ -22,9 +22,17 @@ HWY_INLINE float limit_of(const RayQuery& q, double t) {
     return reached < 1e37 ? static_cast<float>(reached) * (1.0f + 0x1p-20f) : 1e37f;
 }
 
-// Triangles that the ray may meet before `limit`, in float. In the plane coordinates the ray is the origin, and it
-// passes outside of a triangle if two of the edges have it on different sides (Woop, Benthin, Wald 2013). Positions are
-// taken from the ray's point at `along`, beside the leaf. Let u be 2^-24 of the start's and the mesh's largest
+// Rays and triangles, a pair in each lane: the vertices' differences from a point of the ray, along the axes of the
+// plane coordinates; and what RayQuery has of the ray.
+template <class V>
+struct FloatLanes {
+    V x[3], y[3], z[3], shear[2], inverse;
+    V reach;  // from that point to the limit, and the error bound
+};
+
+// Pairs that certainly do not meet before the limit. In the plane coordinates the ray is the origin, and it passes
+// outside of a triangle if two of the edges have it on different sides (Woop, Benthin, Wald 2013). Positions are
+// taken from the ray's point at `along`, beside the triangle. Let u be 2^-24 of the start's and the mesh's largest
 // coordinates together. That point is off the ray by 3 u in each coordinate: by the roundings of the start, of the way
 // to it and of their sum. This counts twice, as 6 u, as the shear is at most 1. A difference from it is rounded by 2 u,
 // again twice. The shear has four roundings, of differences up to 2 of these coordinates: 8 u. The last product and sum
@@ -32,39 +40,50 @@ HWY_INLINE float limit_of(const RayQuery& q, double t) {
 // coordinate, an edge's value is off by at most 8 m e + 8 e²
 // + 2^-21 m². No triangle is hit before its nearest vertex along the ray, whose parameter is off by less than e: 1 /
 // direction_f[z] is at most 1.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE hn::Mask<D> certainly_apart(D d, const FloatLanes<V>& lanes, float error_bound) {
+    V px[3], py[3], nearest = hn::Set(d, 3e38f), m = hn::Zero(d);
+    for (int v = 0; v < 3; ++v) {
+        px[v] = hn::NegMulAdd(lanes.shear[0], lanes.z[v], lanes.x[v]);
+        py[v] = hn::NegMulAdd(lanes.shear[1], lanes.z[v], lanes.y[v]);
+        nearest = hn::Min(nearest, hn::Mul(lanes.z[v], lanes.inverse));
+        m = hn::Max(m, hn::Max(hn::Abs(px[v]), hn::Abs(py[v])));
+    }
+    const V eight = hn::Set(d, 8.0f * error_bound);
+    const V error = hn::MulAdd(hn::MulAdd(m, hn::Set(d, 0x1p-21f), eight), m, hn::Mul(eight, hn::Set(d, error_bound)));
+    V low = hn::Set(d, 3e38f), high = hn::Set(d, -3e38f);
+    for (int v = 0; v < 3; ++v) {
+        const int w = (v + 1) % 3;
+        const V side = hn::NegMulAdd(py[v], px[w], hn::Mul(px[v], py[w]));
+        low = hn::Min(low, side);
+        high = hn::Max(high, side);
+    }
+    const auto outside = hn::And(hn::Lt(low, hn::Neg(error)), hn::Gt(high, error));
+    return hn::Or(outside, hn::Gt(nearest, lanes.reach));
+}
+
+// Triangles that the ray may meet before `limit`, in float. `along`: where it is beside them.
 HWY_INLINE std::uint32_t candidates(const mesh::MeshLeaf& leaf, const RayQuery& q, float along, float limit) {
     const hn::CappedTag<float, mesh::kMeshLeafWidth> d;
-    using VF = hn::Vec<decltype(d)>;
-    const std::uint32_t x = q.axis[0], y = q.axis[1], z = q.axis[2];
     float beside[3];
     for (int i = 0; i < 3; ++i) beside[i] = q.start[i] + along * q.direction_f[i];
-    std::uint32_t lanes = 0;
+    std::uint32_t apart = 0;
     for (std::size_t l = 0; l < mesh::kMeshLeafWidth; l += hn::Lanes(d)) {
-        VF px[3], py[3], nearest = hn::Set(d, 3e38f), m = hn::Zero(d);
+        FloatLanes<hn::Vec<decltype(d)>> lanes;
         for (int v = 0; v < 3; ++v) {
-            const VF pz = hn::Sub(hn::Load(d, leaf.vertex[v][z] + l), hn::Set(d, beside[z]));
-            px[v] = hn::NegMulAdd(hn::Set(d, q.shear[0]), pz,
-                                  hn::Sub(hn::Load(d, leaf.vertex[v][x] + l), hn::Set(d, beside[x])));
-            py[v] = hn::NegMulAdd(hn::Set(d, q.shear[1]), pz,
-                                  hn::Sub(hn::Load(d, leaf.vertex[v][y] + l), hn::Set(d, beside[y])));
-            nearest = hn::Min(nearest, hn::Mul(pz, hn::Set(d, q.inverse[z])));
-            m = hn::Max(m, hn::Max(hn::Abs(px[v]), hn::Abs(py[v])));
+            const auto difference = [&](std::uint32_t i) HWY_ATTR {
+                return hn::Sub(hn::Load(d, leaf.vertex[v][i] + l), hn::Set(d, beside[i]));
+            };
+            lanes.x[v] = difference(q.axis[0]);
+            lanes.y[v] = difference(q.axis[1]);
+            lanes.z[v] = difference(q.axis[2]);
         }
-        const VF error_bound = hn::Set(d, 8.0f * q.error_bound);
-        const VF error = hn::MulAdd(hn::MulAdd(m, hn::Set(d, 0x1p-21f), error_bound), m,
-                                    hn::Mul(error_bound, hn::Set(d, q.error_bound)));
-        VF low = hn::Set(d, 3e38f), high = hn::Set(d, -3e38f);
-        for (int v = 0; v < 3; ++v) {
-            const int w = (v + 1) % 3;
-            const VF side = hn::NegMulAdd(py[v], px[w], hn::Mul(px[v], py[w]));
-            low = hn::Min(low, side);
-            high = hn::Max(high, side);
-        }
-        const auto apart = hn::And(hn::Lt(low, hn::Neg(error)), hn::Gt(high, error));
-        const auto beyond = hn::Gt(nearest, hn::Set(d, limit - along + q.error_bound));
-        lanes |= simd::mask_bits(d, hn::Or(apart, beyond)) << l;
+        for (int k = 0; k < 2; ++k) lanes.shear[k] = hn::Set(d, q.shear[k]);
+        lanes.inverse = hn::Set(d, q.inverse[q.axis[2]]);
+        lanes.reach = hn::Set(d, limit - along + q.error_bound);
+        apart |= simd::mask_bits(d, certainly_apart(d, lanes, q.error_bound)) << l;
     }
-    return ~lanes & ((1u << mesh::kMeshLeafWidth) - 1u);  // unused lanes repeat the last triangle
+    return ~apart & ((1u << mesh::kMeshLeafWidth) - 1u);  // unused lanes repeat the last triangle
 }
 
 // Where the line meets the planes of the triangles, kept between the nearest and the farthest vertex along it. A
@@ -93,11 +112,18 @@ struct Verdicts {
     MD met, open;
 };
 
-// p: the vertices seen from the ray's start. The line passes through a triangle iff its three determinants with the
-// edges do not differ in sign. Let s be their sum, and v = det(p[0], p[1], p[2]): it comes to the triangle's plane at
-// the parameter v / s. So it does before its start where v and s differ in sign, and beyond its end where v − max_t · s
-// and s agree.
-HWY_INLINE Verdicts verdicts(DD d, const VD (&p)[3][3], const VD* direction, double max_t) {
+// Lanes of rays and triangles, a pair in each. p: the vertices seen from the ray's start; max_t: its end.
+struct RayLanes {
+    VD p[3][3], direction[3], max_t;
+    bool ends;  // some of the rays may end before 1e300
+};
+
+// The line passes through a triangle iff its three determinants with the edges do not differ in sign. Let s be their
+// sum, and v = det(p[0], p[1], p[2]): it comes to the triangle's plane at the parameter v / s. So it does before its
+// start where v and s differ in sign, and beyond its end where v − max_t · s and s agree.
+HWY_INLINE Verdicts verdicts(DD d, const RayLanes& lanes) {
+    const VD(&p)[3][3] = lanes.p;
+    const VD* const direction = lanes.direction;
     const VD zero = hn::Zero(d), smallest = hn::Set(d, 1e-280), error_bound = hn::Set(d, kDeterminantError);
     const VD length = sum_abs(direction);
     const VD size[3] = {sum_abs(p[0]), sum_abs(p[1]), sum_abs(p[2])};
@@ -121,43 +147,60 @@ HWY_INLINE Verdicts verdicts(DD d, const VD (&p)[3][3], const VD* direction, dou
     const MD above = hn::Gt(volume, error), below = hn::Lt(volume, hn::Neg(error));
     MD out = hn::Or(hn::And(positive, negative), hn::Or(hn::And(positive, below), hn::And(negative, above)));
     unknown = hn::Or(unknown, hn::Not(hn::Or(above, below)));
-    if (max_t < 1e300) {
+    if (lanes.ends) {
         // Three sums and a product more: twice the bound. What overflows is unknown.
-        const VD end = hn::Set(d, max_t);
+        const VD end = lanes.max_t;
+        const MD has_end = hn::Lt(end, hn::Set(d, 1e300));
         const VD past = hn::NegMulAdd(end, sum, volume);
         const VD wide = hn::MulAdd(hn::Mul(end, length), sizes, volume_size);
         const VD doubt = hn::MulAdd(wide, hn::Add(error_bound, error_bound), smallest);
         const MD beyond = hn::Gt(past, doubt), within = hn::Lt(past, hn::Neg(doubt));
-        out = hn::Or(out, hn::Or(hn::And(positive, beyond), hn::And(negative, within)));
-        unknown = hn::Or(unknown, hn::Not(hn::Or(beyond, within)));
+        const MD late = hn::Or(hn::And(positive, beyond), hn::And(negative, within));
+        out = hn::Or(out, hn::And(has_end, late));
+        unknown = hn::Or(unknown, hn::AndNot(hn::Or(beyond, within), has_end));
     }
     return {hn::AndNot(hn::Or(out, unknown), hn::Eq(zero, zero)), hn::AndNot(out, unknown)};
 }
 
-// `open`: lanes where a sign is uncertain. Of the lanes, only those that are wanted, and their neighbours in a vector,
-// are looked at. A parameter is kept on the ray.
-HWY_INLINE std::uint32_t triangle_hits(const mesh::MeshLeaf& leaf, const RayQuery& q, std::uint32_t wanted, double* t,
-                                       std::uint32_t& open) {
+// Bits of lanes: those that are hit for certain, and those where a sign is uncertain.
+struct HitBits {
+    std::uint32_t met = 0, open = 0;
+};
+
+// Writes the parameters, kept on the ray, of all lanes. NaN, where coordinates overflow, stays so, and is no hit.
+HWY_INLINE HitBits hits_of(DD d, const RayLanes& lanes, std::size_t l, double* t) {
+    const VD at = parameters(d, lanes.p, lanes.direction), zero = hn::Zero(d);
+    const VD from_start = hn::IfThenElse(hn::Lt(at, zero), zero, at);
+    hn::Store(hn::IfThenElse(hn::Gt(from_start, lanes.max_t), lanes.max_t, from_start), d, t);
+    const Verdicts found = verdicts(d, lanes);
+    return {bits_of(d, found.met, l), bits_of(d, found.open, l)};
+}
+
+// Of the leaf's triangles only those that are wanted, and their neighbours in a vector, are looked at.
+HWY_INLINE HitBits triangle_hits(const mesh::MeshLeaf& leaf, const RayQuery& q, std::uint32_t wanted, double* t) {
     const DD d;
     const hn::Rebind<float, DD> df;
-    std::uint32_t hits = 0;
+    HitBits hits;
     for (std::size_t l = 0; l < mesh::kMeshLeafWidth; l += hn::Lanes(d)) {
         if ((wanted >> l & ((1u << hn::Lanes(d)) - 1u)) == 0) continue;
-        VD p[3][3], direction[3];
+        RayLanes lanes;
         for (int i = 0; i < 3; ++i) {
-            direction[i] = hn::Set(d, q.direction[i]);
+            lanes.direction[i] = hn::Set(d, q.direction[i]);
             for (int v = 0; v < 3; ++v)
-                p[v][i] = hn::Sub(hn::PromoteTo(d, hn::Load(df, leaf.vertex[v][i] + l)), hn::Set(d, q.origin[i]));
+                lanes.p[v][i] = hn::Sub(hn::PromoteTo(d, hn::Load(df, leaf.vertex[v][i] + l)), hn::Set(d, q.origin[i]));
         }
-        // NaN, where coordinates overflow, stays so, and is no hit.
-        const VD at = parameters(d, p, direction), zero = hn::Zero(d), end = hn::Set(d, q.max_t);
-        const VD from_start = hn::IfThenElse(hn::Lt(at, zero), zero, at);
-        hn::Store(hn::IfThenElse(hn::Gt(from_start, end), end, from_start), d, t + l);
-        const Verdicts found = verdicts(d, p, direction, q.max_t);
-        hits |= bits_of(d, found.met, l);
-        open |= bits_of(d, found.open, l);
+        lanes.max_t = hn::Set(d, q.max_t);
+        lanes.ends = q.max_t < 1e300;
+        const HitBits found = hits_of(d, lanes, l, t + l);
+        hits.met |= found.met;
+        hits.open |= found.open;
     }
     return hits;
+}
+
+// Whether a hit comes before the answer; of equal ones the triangle of lowest index counts.
+HWY_INLINE bool is_before(double t, std::uint32_t triangle, const RayAnswer& answer) {
+    return t <= answer.t && !(answer.hit && t == answer.t && triangle > answer.triangle);
 }
 
 // True if it has changed the answer. `along`: where the ray comes to the leaf's box.
@@ -167,15 +210,12 @@ HWY_INLINE bool trace_leaf(const RayQuery& q, std::uint32_t index, float along, 
     const std::uint32_t wanted = candidates(leaf, q, along, limit);
     if (wanted == 0) return false;
     HWY_ALIGN double t[mesh::kMeshLeafWidth];
-    std::uint32_t open = 0;
     bool found = false;
-    std::uint32_t lanes = triangle_hits(leaf, q, wanted, t, open);
-    lanes = (lanes | open) & wanted;
-    for (; lanes != 0; lanes &= lanes - 1) {
+    const HitBits hits = triangle_hits(leaf, q, wanted, t);
+    for (std::uint32_t lanes = (hits.met | hits.open) & wanted; lanes != 0; lanes &= lanes - 1) {
         const auto lane = static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(lanes));
-        if (!(t[lane] <= answer.t)) continue;
-        if (answer.hit && t[lane] == answer.t && leaf.triangle[lane] > answer.triangle) continue;
-        if ((open >> lane & 1u) && !meets(index, lane)) continue;
+        if (!is_before(t[lane], leaf.triangle[lane], answer)) continue;
+        if ((hits.open >> lane & 1u) && !meets(index, lane)) continue;
         answer = {t[lane], leaf.triangle[lane], true};
         found = true;
         if (q.any) return true;

@@ -46,12 +46,27 @@ struct RayAnswer {
 
 inline constexpr std::size_t kRayPacketWidth = 16;
 
-// As ExactTest, of the query at `ray`.
-using PacketExactTest = FunctionRef<bool(std::uint32_t ray, std::uint32_t leaf, std::uint32_t lane)>;
+// Rays side by side, as the caller gave them. Lanes beyond the last repeat the first.
+struct alignas(64) RayPacket {
+    double origin[3][kRayPacketWidth], direction[3][kRayPacketWidth], max_t[kRayPacketWidth];
+    std::uint32_t count;  // 1 to kRayPacketWidth
+};
 
-// The nearest hit of each, as trace() would answer it; `any` is not looked at. They share the mesh's `nodes`, which are
-// not null; their directions agree in sign, and `scale` differs by a factor of four at most. Fast where they leave from
-// nearly one place into nearly one direction. Requires 1 to kRayPacketWidth queries, and as many answers.
-void trace_packet(std::span<const RayQuery> queries, PacketExactTest meets, std::span<RayAnswer> answers);
+// The hierarchy that a packet goes through; query_of(ray) of a lane; as ExactTest, of the ray in a lane.
+struct PacketMesh {
+    const BoxNode* nodes;
+    const MeshLeaf* leaves;
+    double extent;
+    FunctionRef<RayQuery(std::uint32_t ray)> query_of;
+    FunctionRef<bool(std::uint32_t ray, std::uint32_t leaf, std::uint32_t lane)> meets;
+};
+
+// The nearest hit of each ray, as trace() would answer it. False, without answers, where the rays do not lie together:
+// they leave from nearly one place into nearly one direction, of equal signs, and are valid. Rays that part soon are
+// slower in a packet, as it visits what any of them does.
+[[nodiscard]] bool trace_packet(const RayPacket& rays, const PacketMesh& mesh, std::span<RayAnswer> answers);
+
+// A bound of the rounding at any point of a mesh, for rays that start within `far` of its origin.
+inline constexpr double kRayError = 7.5e-7;
 
 }  // namespace crofton::mesh
