@@ -71,6 +71,8 @@ std::string means_with_occlusion(std::span<const FrameStatistics> frames) {
         text += mean_row("ms to draw it, median", " %9.2f", median([](const auto& f) { return 1e-3 * f.draw_us; }),
                          median([](const auto& f) { return 1e-3 * f.occlusion->draw_us; }));
     text += mean_row("ms of the frame, median", " %9.2f", median(frame_ms), median(frame_ms_with_occlusion));
+    text += mean_row("ms of the frame, 99 % are below", " %9.2f", quantile_of(frames, 0.99, frame_ms),
+                     quantile_of(frames, 0.99, frame_ms_with_occlusion));
     return text;
 }
 

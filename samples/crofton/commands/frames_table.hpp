@@ -30,15 +30,22 @@ template <class Value>
     return frames.empty() ? 0.0 : sum / static_cast<double>(frames.size());
 }
 
-// Times are told by medians: a frame that the system interrupts does not count.
+// The value that a share of the frames stays below.
 template <class Value>
-[[nodiscard]] double median_of(std::span<const pipeline::FrameStatistics> frames, Value value) {
+[[nodiscard]] double quantile_of(std::span<const pipeline::FrameStatistics> frames, double share, Value value) {
     std::vector<double> values;
     for (const pipeline::FrameStatistics& frame : frames) values.push_back(static_cast<double>(value(frame)));
     if (values.empty()) return 0.0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
+    const auto below = static_cast<std::size_t>(share * static_cast<double>(values.size()));
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(std::min(below, values.size() - 1));
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+}
+
+// Times are told by medians: a frame that the system interrupts does not count.
+template <class Value>
+[[nodiscard]] double median_of(std::span<const pipeline::FrameStatistics> frames, Value value) {
+    return quantile_of(frames, 0.5, value);
 }
 
 }  // namespace crofton::cli

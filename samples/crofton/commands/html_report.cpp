@@ -109,6 +109,8 @@ std::string both_columns(const ReportContents& c) {
         html += row_of_both("ms to draw it, median", median([](const auto& f) { return 1e-3 * f.draw_us; }),
                             median([](const auto& f) { return 1e-3 * f.occlusion->draw_us; }), "%.1f");
     html += row_of_both("ms of the frame, median", median(frame_ms), median(frame_ms_with_occlusion), "%.1f");
+    html += row_of_both("ms of the frame, 99 % are below", quantile_of(c.frames, 0.99, frame_ms),
+                        quantile_of(c.frames, 0.99, frame_ms_with_occlusion), "%.1f");
     html += "</table></div>\n";
     return html;
 }

@@ -275,7 +275,8 @@ TEST_SUITE("cli/frames") {
         REQUIRE(run.status == 0);
         CHECK(says(run.out, "triangles submitted"));
         CHECK(says(run.out, "without"));
-        CHECK(says(run.out, "ms of the frame"));
+        CHECK(says(run.out, "ms of the frame, median"));
+        CHECK(says(run.out, "ms of the frame, 99 % are below"));
         for (const char* column : {"occlusion_visible", "occlusion_triangles_submitted", "occlusion_occlude_us"})
             CHECK_MESSAGE(says(contents_of(csv), column), column);
     }

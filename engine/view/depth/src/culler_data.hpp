@@ -67,6 +67,14 @@ struct PatchData {
     const Projection& projection;
 };
 
+// A triangle in a shadow map: texels, and negated nearness. Lookups read what is up to `reach` away, with up to
+// depth_error more or less.
+struct MapTriangle {
+    double x[3], y[3], z[3];
+    double x_per_row[3], z_per_row[3];  // along the edge from each corner to the next
+    double reach, depth_error;
+};
+
 inline constexpr std::uint32_t kMaxPatchVertices = Cluster::kMaxTriangles * 3;
 
 // Of each object as a whole. Objects that cannot be placed get a negative least_w, and cover nothing.
@@ -81,5 +89,9 @@ std::size_t first_shown(const Tiles& tiles, const Projection* projections, const
                         std::size_t begin, std::size_t end);
 // Draws the cluster; returns the triangles that may own a sample, as far as the tiles are there.
 std::uint64_t draw_patch(const PictureData& picture, const ObjectData& object, const PatchData& patch);
+// Lowers the floors of a map, row by row of tiles, to the farthest point that a lookup in the triangle's part of each
+// row may have. Returns false if there is none. `width`: of the map, in texels.
+bool mark_rows(const MapTriangle& triangle, std::uint32_t first_row, std::uint32_t last_row, std::uint32_t width,
+               float* floors);
 
 }  // namespace crofton::depth

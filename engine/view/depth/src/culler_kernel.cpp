@@ -11,6 +11,7 @@
 #include <algorithm>
 
 #include "faces-inl.hpp"
+#include "map_rows-inl.hpp"
 #include "near_faces-inl.hpp"
 #include "patch-inl.hpp"
 #include "projection-inl.hpp"
@@ -58,6 +59,11 @@ std::uint64_t draw(const PictureData& picture, const ObjectData& object, const P
     return PatchDrawer(picture, object, patch).run();
 }
 
+bool mark(const MapTriangle& triangle, std::uint32_t first_row, std::uint32_t last_row, std::uint32_t width,
+          float* floors) {
+    return mark_triangle(triangle, first_row, last_row, width, floors);
+}
+
 }  // namespace
 }  // namespace crofton::depth::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -70,6 +76,7 @@ HWY_EXPORT(project_parts);
 HWY_EXPORT(ask);
 HWY_EXPORT(ask_each);
 HWY_EXPORT(draw);
+HWY_EXPORT(mark);
 
 void project_objects(const PictureData& picture, const DepthObject* objects, std::size_t count, Projection* to) {
     HWY_DYNAMIC_DISPATCH(project_each)(picture, objects, count, to);
@@ -87,6 +94,10 @@ std::size_t first_shown(const Tiles& tiles, const Projection* projections, const
 }
 std::uint64_t draw_patch(const PictureData& picture, const ObjectData& object, const PatchData& patch) {
     return HWY_DYNAMIC_DISPATCH(draw)(picture, object, patch);
+}
+bool mark_rows(const MapTriangle& triangle, std::uint32_t first_row, std::uint32_t last_row, std::uint32_t width,
+               float* floors) {
+    return HWY_DYNAMIC_DISPATCH(mark)(triangle, first_row, last_row, width, floors);
 }
 
 }  // namespace crofton::depth

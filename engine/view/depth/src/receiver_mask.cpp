@@ -226,7 +226,7 @@ void ReceiverMask::add_pieces() {
             if (in_map.is_unclear())
                 mark_everything();
             else
-                mark_rows(pieces_[i], boxes_[i], in_map);
+                mark_triangle(pieces_[i], boxes_[i], in_map);
         }
         std::swap(pieces_, next_);
     }
@@ -343,48 +343,27 @@ void ReceiverMask::mark(const Projection& p) {
 }
 
 // The triangle's part in each row of tiles, wider and higher by what lookups reach. Bounds are those of project().
-void ReceiverMask::mark_rows(const Piece& piece, const Cluster& box, const Projection& in_map) {
-    const MapTriangle t = triangle_in_map(piece, box);
-    const auto size = static_cast<double>(map_.tiles.width);
-    for (std::uint32_t ty = in_map.y0 / kTile; ty <= in_map.y1 / kTile; ++ty) {
-        const double low = ty * double{kTile} + 0.5 - t.reach, high = low + (kTile - 1.0) + 2.0 * t.reach;
-        double first = size, last = -1.0, farthest = -std::numeric_limits<double>::infinity();
-        const auto include = [&](const glm::dvec3& end, const glm::dvec2& per_row) {
-            // The end of the edge, or where it leaves the rows.
-            const double up = std::clamp(end.y, low, high) - end.y;
-            const double x = end.x + up * per_row.x;
-            first = std::min(first, x), last = std::max(last, x);
-            farthest = std::max(farthest, end.z + up * per_row.y);
-        };
-        for (std::size_t k = 0; k < 3; ++k) {
-            const glm::dvec3 &a = t.corners[k], &b = t.corners[(k + 1) % 3];
-            if (std::max(a.y, b.y) < low || std::min(a.y, b.y) > high) continue;
-            include(a, t.per_row[k]);
-            include(b, t.per_row[k]);
-        }
-        const double from = std::max(std::ceil(first - t.reach - 0.5), 0.0);
-        const double to = std::min(std::floor(last + t.reach - 0.5), size - 1.0);
-        if (!(from <= to)) continue;
-        const auto floor = static_cast<float>(-farthest - t.depth_error);
-        empty_ = false;
-        float* const row = floors_.data() + std::size_t{ty} * columns_;
-        for (auto tx = static_cast<std::uint32_t>(from) / kTile; tx <= static_cast<std::uint32_t>(to) / kTile; ++tx)
-            row[tx] = std::min(row[tx], floor);
-    }
+void ReceiverMask::mark_triangle(const Piece& piece, const Cluster& box, const Projection& in_map) {
+    const bool marked =
+        mark_rows(triangle_in_map(piece, box), in_map.y0 / kTile, in_map.y1 / kTile, map_.tiles.width, floors_.data());
+    empty_ = empty_ && !marked;
 }
 
-ReceiverMask::MapTriangle ReceiverMask::triangle_in_map(const Piece& piece, const Cluster& box) const {
-    MapTriangle t;
+MapTriangle ReceiverMask::triangle_in_map(const Piece& piece, const Cluster& box) const {
+    MapTriangle t{};
     double least_w = std::numeric_limits<double>::infinity(), deepest = 0.0;
     for (std::size_t k = 0; k < 3; ++k) {
         const std::array<double, 4> clip = clip_of(in_map_, piece.corners[k]);
-        t.corners[k] = place_of(map_, clip);
+        const glm::dvec3 place = place_of(map_, clip);
+        t.x[k] = place.x, t.y[k] = place.y, t.z[k] = place.z;
         least_w = std::min(least_w, clip[3]);
-        deepest = std::max(deepest, std::abs(t.corners[k].z));
+        deepest = std::max(deepest, std::abs(place.z));
     }
     for (std::size_t k = 0; k < 3; ++k) {
-        const glm::dvec3 edge = t.corners[(k + 1) % 3] - t.corners[k];
-        t.per_row[k] = edge.y != 0.0 ? glm::dvec2(edge.x / edge.y, edge.z / edge.y) : glm::dvec2(0.0);
+        const std::size_t n = (k + 1) % 3;
+        const double up = t.y[n] - t.y[k];
+        t.x_per_row[k] = up != 0.0 ? (t.x[n] - t.x[k]) / up : 0.0;
+        t.z_per_row[k] = up != 0.0 ? (t.z[n] - t.z[k]) / up : 0.0;
     }
     std::array<double, 4> errors;
     for (std::size_t i = 0; i < 4; ++i) {

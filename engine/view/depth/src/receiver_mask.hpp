@@ -57,12 +57,6 @@ class ReceiverMask {
         std::array<glm::dvec3, 3> corners;  // pixels, and nearness
         bool before_eye = true;             // all of it; else the corners mean nothing
     };
-    // Texels, and negated nearness. Lookups read what is up to `reach` away, with up to depth_error more or less.
-    struct MapTriangle {
-        std::array<glm::dvec3, 3> corners;
-        std::array<glm::dvec2, 3> per_row;  // along the edge from each corner to the next: x and nearness
-        double reach, depth_error;
-    };
 
     void begin(const SeenPicture& seen, const DepthReceivers& receivers, const PictureView& map);
     void add_object(const DepthReceiver& receiver, const SeenObject& seen, std::span<const VisibleCluster> clusters);
@@ -75,7 +69,7 @@ class ReceiverMask {
     // Projects boxes_ into the map: nearness is negated, so the bound is that of the farthest point.
     void project_into_map();
     void mark(const Projection& in_map);  // the whole rectangle
-    void mark_rows(const Piece& piece, const Cluster& box, const Projection& in_map);
+    void mark_triangle(const Piece& piece, const Cluster& box, const Projection& in_map);
     [[nodiscard]] MapTriangle triangle_in_map(const Piece& piece, const Cluster& box) const;
     void mark_everything();
 
