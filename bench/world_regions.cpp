@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Compares Worlds of regions with a World that has each object singly: views, rays, attaching, and a flight.
+#include <array>
 #include <crofton/crofton.hpp>
 #include <glm/common.hpp>
 #include <random>
@@ -7,6 +8,10 @@
 
 #include "cull_crowd.hpp"
 #include "world_frames.hpp"
+
+#ifdef CROFTON_HAVE_BULLET
+#include <BulletCollision/BroadphaseCollision/btDbvt.h>
+#endif
 
 namespace crofton::bench {
 namespace {
@@ -201,10 +206,114 @@ void attaching(int frames) {
     }
 }
 
+// A region that comes into a world of a million others and goes again, beside Bullet's dynamic tree of aligned boxes,
+// into which each object is inserted, and beside one tree that is built again.
+void peers(int frames) {
+    constexpr std::size_t kOthers = 1'000'000;
+    const std::vector<Obb> others = crowd(kOthers);
+    std::vector<RegionObject> objects;
+    for (const Obb& box : others) objects.push_back({.bound = box});
+    World world({.pairs = false});
+    require_ok(world.attach(Region::prepare(objects).value(), glm::dvec3(0.0)).has_value(), "attaching");
+    require_ok(world.update().has_value(), "an update");
+#ifdef CROFTON_HAVE_BULLET
+    const auto volume_of = [](const Obb& box, const glm::dvec3& moved) {
+        const Aabb bounds = aabb_of(box);
+        const glm::dvec3 low = bounds.min + moved, high = bounds.max + moved;
+        return btDbvtVolume::FromMM(btVector3(btScalar(low.x), btScalar(low.y), btScalar(low.z)),
+                                    btVector3(btScalar(high.x), btScalar(high.y), btScalar(high.z)));
+    };
+    btDbvt tree;
+    for (const Obb& box : others) tree.insert(volume_of(box, glm::dvec3(0.0)), nullptr);
+#endif
+    std::printf(
+        "objects,attach and update in µs,detach and update in µs,Bullet: insert in µs,remove in µs,build in ms\n");
+    for (const std::size_t count : {1'000u, 10'000u, 100'000u}) {
+        const std::vector<Obb> boxes = crowd(count);
+        objects.clear();
+        for (const Obb& box : boxes) objects.push_back({.bound = box});
+        const Region region = Region::prepare(objects).value();
+        double attach = 1e30, detach = 1e30, insert = 1e30, remove = 1e30;
+        for (int frame = 0; frame < frames; ++frame) {
+            const glm::dvec3 origin(frame % 60, 20.0, 20.0);
+            RegionHandle handle;
+            attach = std::min(attach, microseconds([&] {
+                                  handle = world.attach(region, origin).value();
+                                  require_ok(world.update().has_value(), "an update");
+                              }));
+            detach = std::min(detach, microseconds([&] {
+                                  require_ok(world.detach(handle).has_value(), "detaching");
+                                  require_ok(world.update().has_value(), "an update");
+                              }));
+#ifdef CROFTON_HAVE_BULLET
+            if (frame >= 5) continue;
+            std::vector<btDbvtNode*> nodes(count);
+            insert = std::min(insert, microseconds([&] {
+                                  for (std::size_t i = 0; i < count; ++i)
+                                      nodes[i] = tree.insert(volume_of(boxes[i], origin), nullptr);
+                              }));
+            remove = std::min(remove, microseconds([&] {
+                                  for (btDbvtNode* const node : nodes) tree.remove(node);
+                              }));
+#endif
+        }
+        std::vector<Obb> all = others;
+        all.insert(all.end(), boxes.begin(), boxes.end());
+        const double build = microseconds([&] { require_ok(boxtree::BoxTree::build(all).has_value(), "a tree"); });
+        std::printf("%zu,%.1f,%.1f,%.0f,%.0f,%.0f\n", count, attach, detach, insert, remove, build / 1000.0);
+    }
+}
+
+// Meshes with an occluder each, which updates place until all hide something: by the clock, for each update once.
+void occluders() {
+    constexpr std::size_t kRegions = 64, kObjects = 4096;
+    TriangleMesh cube;
+    for (unsigned i = 0; i < 8; ++i) cube.positions.emplace_back(i & 1u, i >> 1 & 1u, i >> 2);
+    for (const auto& [a, b, c, d] : {std::array{0u, 4u, 6u, 2u},
+                                     {1u, 3u, 7u, 5u},
+                                     {0u, 1u, 5u, 4u},
+                                     {2u, 6u, 7u, 3u},
+                                     {0u, 2u, 3u, 1u},
+                                     {4u, 5u, 7u, 6u}})
+        cube.indices.insert(cube.indices.end(), {a, b, c, a, c, d});
+    const RegionMesh mesh{.mesh = {.positions = cube.positions, .indices = cube.indices, .occluders = true}};
+    std::vector<RegionObject> objects(kObjects);
+    for (std::size_t i = 0; i < kObjects; ++i) {
+        objects[i].mesh = 0;
+        objects[i].transform.translation = {3.0 * static_cast<double>(i % 64), 0.0, 3.0 * static_cast<double>(i / 64)};
+    }
+    const Region region = Region::prepare(objects, {.meshes = std::span(&mesh, 1)}).value();
+    World world({.pairs = false});
+    std::vector<double> times;
+    const auto update_all = [&](const char* what) {
+        times.clear();
+        do {
+            const auto start = std::chrono::steady_clock::now();
+            require_ok(world.update().has_value(), "an update");
+            times.push_back(
+                std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count());
+        } while (world.statistics().occluders_waiting > 0 || times.size() < kRegions * kObjects / 200);
+        double mean = 0.0;
+        for (const double time : times) mean += time / static_cast<double>(times.size());
+        std::sort(times.begin(), times.end());
+        std::printf("%zu occluders %s in %zu updates: mean %.1f µs, the slowest %.1f, %.1f, %.1f µs\n",
+                    kRegions * kObjects, what, times.size(), mean, times[times.size() - 3], times[times.size() - 2],
+                    times.back());
+    };
+    std::vector<RegionHandle> handles;
+    for (std::size_t i = 0; i < kRegions; ++i)
+        handles.push_back(world.attach(region, {200.0 * static_cast<double>(i), 0.0, 0.0}).value());
+    update_all("come");
+    for (const RegionHandle handle : handles) require_ok(world.detach(handle).has_value(), "detaching");
+    update_all("go");
+}
+
 }  // namespace
 
 void regions(int frames) {
+    occluders();
     attaching(frames);
+    peers(frames);
     aging(frames);
     Town town;
     views(town, frames);

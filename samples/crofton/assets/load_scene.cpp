@@ -29,7 +29,7 @@ Result<void> refuse_regions(const std::string& path) {
     std::error_code ignored;
     if (!std::filesystem::exists(path + "/" + bake::kRegionIndexName, ignored)) return {};
     return fail(ErrorCode::unsupported, kNoItem,
-                path + ": is a folder of regions, which frames, view and bake take; name one of its files");
+                path + ": is a folder of regions, which frames, view, bake and pvs take; name one of its files");
 }
 
 namespace {

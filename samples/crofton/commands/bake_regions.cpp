@@ -16,7 +16,9 @@
 
 #include "assets/baked_source.hpp"
 #include "commands.hpp"
+#include "for_each_region.hpp"
 #include "interrupt.hpp"
+#include "pipeline/region_sets.hpp"
 #include "progress_bar.hpp"
 #include "region_state.hpp"
 #include "report.hpp"
@@ -37,24 +39,6 @@ Figures figures_of(std::span<const bake::RegionFile> index) {
         figures.bytes += file.bytes;
     }
     return figures;
-}
-
-// Runs `body` for each region, and returns the error of the first that has one.
-template <class Body>
-Result<void> for_each_region(std::size_t count, Executor& executor, Body body) {
-    std::mutex mutex;
-    std::size_t first_bad = count;
-    Result<void> first;
-    executor.parallel_for(count, 1, [&](std::size_t begin, std::size_t end, unsigned) {
-        for (std::size_t i = begin; i < end; ++i) {
-            Result<void> done = body(i);
-            const std::lock_guard lock(mutex);
-            if (done || i >= first_bad) continue;
-            first_bad = i;
-            first = std::move(done);
-        }
-    });
-    return first;
 }
 
 }  // namespace
@@ -127,6 +111,8 @@ class RegionWriter {
         RegionState::Done done{regions_.region(place), bake::checksum(*file)};
         done.file.bytes = file->size();
         std::string path = bake_.folder + "/" + done.file.name;
+        std::error_code none;  // visible sets of an earlier file of this name, which are no longer of it
+        std::filesystem::remove(bake_.folder + "/" + pipeline::sets_name_of(done.file.name), none);
         if (auto written = bake::write_file(path, *file, bake::Flush::later); !written) return written;
         const std::lock_guard lock(mutex_);
         written_.push_back(std::move(path));

@@ -179,19 +179,24 @@ class FramesRun {
         if (options_.read.unit > 0.0)
             return fail(ErrorCode::unsupported, kNoItem, "--unit is not for a folder of regions");
         const FramesOptions fixed;
-        if (options_.verify || options_.bounds != fixed.bounds || options_.cull != fixed.cull ||
-            options_.tree != fixed.tree || !options_.baked.empty() || !options_.map.empty() || options_.instances != 0)
+        if (options_.verify && options_.real_time)
             return fail(ErrorCode::unsupported, kNoItem,
-                        "--verify, --bounds, --cull, --tree, --baked, --map and --instances are not for a folder of "
+                        "--verify needs frames that wait for what they see: leave out --real-time");
+        if (options_.bounds != fixed.bounds || options_.cull != fixed.cull || options_.tree != fixed.tree ||
+            !options_.baked.empty() || !options_.map.empty() || options_.instances != 0)
+            return fail(ErrorCode::unsupported, kNoItem,
+                        "--bounds, --cull, --tree, --baked, --map and --instances are not for a folder of "
                         "regions, which holds its trees, bounds and occluders");
         if (auto set = set_occlusion(size); !set) return set;
         pipeline::RegionPipelineOptions how;
         how.stream = {.distance = options_.region_distance,
-                      .meshes = options_.occlude,
+                      .meshes = options_.occlude && !by_sets(),
                       .waits = !options_.real_time,
                       .places_occluders = pipeline_options_.occlusion.has_value(),
                       .loaders = pool_ ? pool_->concurrency() : 1,
-                      .largest_file = options_.read.limits.bytes};
+                      .largest_file = options_.read.limits.bytes,
+                      .sets = by_sets()};
+        how.by_sets = by_sets();
         how.occlusion = pipeline_options_.occlusion;
         how.picture = pipeline_options_.picture;
         auto opened = pipeline::RegionPipeline::open(options_.scene, how);
@@ -246,11 +251,16 @@ class FramesRun {
         return options_.occluders || !options_.occlusion_size.empty() || !options_.baked.empty();
     }
 
+    [[nodiscard]] bool by_sets() const { return options_.occlude && options_.occlusion == "sets"; }
+
     Result<void> set_occlusion(const ImageSize& size) {
         if (!options_.occlude) return {};
-        if (!options_.occlusion.empty() && options_.occlusion != "depth" && options_.occlusion != "occluders")
+        if (!options_.occlusion.empty() && options_.occlusion != "depth" && options_.occlusion != "occluders" &&
+            options_.occlusion != "sets")
             return fail(ErrorCode::invalid_argument, kNoItem,
-                        "--occlusion: '" + options_.occlusion + "' is not one of depth, occluders");
+                        "--occlusion: '" + options_.occlusion + "' is not one of depth, occluders, sets");
+        if (by_sets() && !pipeline::holds_regions(options_.scene))
+            return fail(ErrorCode::unsupported, kNoItem, "--occlusion sets needs a folder of regions");
         if (options_.shadow != 0 && (by_occluders() || pipeline::holds_regions(options_.scene)))
             return fail(ErrorCode::unsupported, kNoItem,
                         "--shadow needs --occlusion depth, and a scene that is no folder of regions");
@@ -266,7 +276,7 @@ class FramesRun {
         if (options_.occluders || !options_.occlusion_size.empty() || !options_.baked.empty())
             return fail(ErrorCode::invalid_argument, kNoItem,
                         "--occluders, --occlusion-size and --baked need --occlusion occluders");
-        pipeline_options_.picture = {size.width, size.height};
+        if (!by_sets()) pipeline_options_.picture = {size.width, size.height};
         return {};
     }
 
@@ -341,13 +351,20 @@ class FramesRun {
 
     Result<void> verify(const FrameStatistics& frame, pipeline::Verification& verification) {
         const bool exactly = drawing_ && drawing_->device().counts_exactly();
-        pipeline::verify_frame(source_->scene, *pipeline_, pipeline_options_, frame, exactly, verification);
+        if (regions_)
+            pipeline::verify_frame(*regions_, frame, exactly, verification);
+        else
+            pipeline::verify_frame(source_->scene, *pipeline_, pipeline_options_, frame, exactly, verification);
         if (!frame.occlusion || !drawing_) return {};
         const auto owners = drawing_->find_owners(frame);
         if (!owners) return tl::unexpected(owners.error());
         const auto changed = drawing_->count_changed_pixels();
         if (!changed) return tl::unexpected(changed.error());
-        pipeline::verify_occlusion(source_->scene, *owners, *changed, exactly, frame, verification);
+        if (regions_)
+            pipeline::verify_occlusion(*regions_->drawables(), *owners, *changed, exactly, frame, verification);
+        else
+            pipeline::verify_occlusion(pipeline::SceneDrawables(source_->scene), *owners, *changed, exactly, frame,
+                                       verification);
         return {};
     }
 
@@ -390,6 +407,7 @@ class FramesRun {
 
     [[nodiscard]] std::string occlusion_setting() const {
         if (pipeline_options_.picture) return "by the depth of drawn triangles";
+        if (by_sets()) return "by the regions' visible sets";
         if (!pipeline_options_.occlusion) return "";
         const OcclusionOptions& o = *pipeline_options_.occlusion;
         return std::to_string(o.max_occluders) + " occluders at most, " + std::to_string(o.size.width) + "x" +
@@ -487,10 +505,12 @@ void add_frames_command(CommandLine& line) {
     const Option occlude =
         command.flag("--occlude", options->occlude, "Also draw each frame without hidden objects, and compare both");
     command
-        .option("--occlusion", options->occlusion,
-                "depth: finds hidden triangles of this picture by the depth of those drawn before. occluders: finds "
-                "hidden instances by solid boxes found in the scene, for any picture. Default: depth, or occluders if "
-                "one of the next three options is given")
+        .option(
+            "--occlusion", options->occlusion,
+            "depth: finds hidden triangles of this picture by the depth of those drawn before. occluders: finds "
+            "hidden instances by solid boxes found in the scene, for any picture. sets: leaves out what visible sets "
+            "of regions prove hidden ('crofton pvs' on the folder). Default: depth, or occluders if "
+            "one of the next three options is given")
         .needs(occlude);
     command.option("--occluders", options->occluders, "Largest number of occluders to draw; 128 by default")
         .whole_between(0, 1000000)

@@ -16,8 +16,10 @@
 #include "interrupt.hpp"
 #include "pipeline/pvs_scene.hpp"
 #include "pipeline/pvs_views.hpp"
+#include "pipeline/region_stream.hpp"
 #include "progress_bar.hpp"
 #include "pvs_cells.hpp"
+#include "pvs_regions.hpp"
 #include "pvs_svg.hpp"
 #include "read_options.hpp"
 #include "report.hpp"
@@ -34,7 +36,8 @@ constexpr std::uint32_t kByScene = ~std::uint32_t{0}, kStepsInLevels = 10000;
 struct PvsRequest {
     ReadOptions read;
     std::string scene, map, cells = "64x2x64", eyes, sides = "both", shard, state, out, svg, eye, json;
-    double height = 10.0, epsilon = 1e-4, confidence = 0.999, seconds = 0.0, near_radius = 0.5, cell_size = HUGE_VAL;
+    double reach = 0.0, height = 10.0, epsilon = 1e-4, confidence = 0.999, seconds = 0.0, near_radius = 0.5,
+           cell_size = HUGE_VAL;
     std::uint64_t seed = 1;
     std::uint32_t instances = 0, halvings = 4, surface_steps = kByScene, views = 0;
     unsigned threads = 1;
@@ -311,8 +314,40 @@ Result<Views> look_from_places(const Job& job, const pvs::Pvs& sets, Executor& e
     return Views{*looked};
 }
 
+// Sets of each region of a folder, by the options that make sense there.
+Result<int> run_regions(const PvsRequest& options, Executor& executor) {
+    const PvsRequest fixed;
+    if (options.state != fixed.state || options.out != fixed.out || options.svg != fixed.svg || options.views != 0 ||
+        options.map != fixed.map || options.instances != 0 || options.eyes != fixed.eyes || options.seconds > 0.0)
+        return fail(ErrorCode::unsupported, kNoItem,
+                    "--state, --out, --svg, --views, --map, --instances, --eyes and --seconds are not for a folder of "
+                    "regions: sets are written beside the regions, and a run continues where one was interrupted");
+    const auto shard = shard_from(options.shard);
+    if (!shard) return tl::unexpected(shard.error());
+    RegionSetsBake bake;
+    bake.folder = options.scene;
+    if (std::sscanf(options.cells.c_str(), "%ux%ux%u", &bake.cells.x, &bake.cells.y, &bake.cells.z) != 3)
+        return fail(ErrorCode::invalid_argument, kNoItem, "--cells: regions have NXxNYxNZ cells each");
+    if (options.cells == fixed.cells) bake.cells = RegionSetsBake().cells;
+    bake.height = options.height;
+    bake.reach = options.reach;
+    bake.lines = {.epsilon = options.epsilon,
+                  .confidence = options.confidence,
+                  .seed = options.seed,
+                  .sides = options.sides == "front" ? occlude::Sides::front : occlude::Sides::both};
+    bake.proofs.near_radius = options.near_radius;
+    bake.proofs.halvings = options.halvings;
+    bake.proofs.surface_steps = options.surface_steps == kByScene ? 0 : options.surface_steps;
+    bake.shard = *shard;
+    bake.largest_file = options.read.limits.bytes;
+    bake.json = options.json;
+    return bake_region_sets(bake, executor);
+}
+
 Result<int> run_pvs(const PvsRequest& options) {
     ThreadPool pool(options.threads);
+    if (pipeline::holds_regions(options.scene)) return run_regions(options, pool);
+    if (options.reach > 0.0) return fail(ErrorCode::invalid_argument, kNoItem, "--reach is for a folder of regions");
     auto job = make_job(options, pool);
     if (!job) return tl::unexpected(job.error());
     catch_interrupts();  // before, there is nothing to keep
@@ -366,11 +401,13 @@ void add_pvs_command(CommandLine& line) {
         "  crofton pvs level.wad --map MAP01 --cells rooms --near 0.2 --out map01.crofton\n"
         "  crofton pvs town --shard 0/2 --state part0       half of the lines; the others: 1/2, part1\n"
         "  crofton merge part0 part1 --out town.state       then both together\n"
-        "  crofton pvs town --state town.state --out town_pvs.crofton --views 1000");
+        "  crofton pvs town --state town.state --out town_pvs.crofton --views 1000\n"
+        "  crofton pvs regions/ --cells 8x1x8 --reach 50    sets beside each region of a folder");
     command
         .option(
             "scene", options->scene,
-            "town, room, office, valley, hall, a folder of city parts, or a .glb, .gltf, .obj, .wad or .crofton file")
+            "town, room, office, valley, hall, a folder of city parts or of regions, or a .glb, .gltf, .obj, .wad or "
+            ".crofton file")
         .required();
     command
         .option("--cells", options->cells,
@@ -388,6 +425,10 @@ void add_pvs_command(CommandLine& line) {
         .positive()
         .show_default()
         .excludes(eyes);
+    command
+        .option("--reach", options->reach,
+                "Of a folder of regions: how far cells reach in x and z beyond a region's objects")
+        .not_negative();
     command.option("--epsilon", options->epsilon, "Share of the lines through a cell above which no pair is missed")
         .show_default();
     command.option("--confidence", options->confidence, "Confidence that no such pair is missed").show_default();

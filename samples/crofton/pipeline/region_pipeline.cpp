@@ -182,8 +182,40 @@ struct RegionPipeline::State {
             });
     }
 
+    void count_triangles(const Frustum& frustum, OccludedFrame& frame) {
+        if (!options.count_triangles) return;
+        const ObjectCounts counts = counter.count(*drawables, frustum, frame.visible_ids, verdicts);
+        frame.triangles_submitted = counts.triangles_submitted;
+        frame.triangles_passed = counts.triangles_passed;
+    }
+
+    // Of the visible instances, those that no region's sets prove hidden.
+    void keep_in_sets(const Camera& camera, OccludedFrame& frame) const {
+        const auto start = Clock::now();
+        std::size_t next = 0;
+        for (const RegionStream::Attached& entry : in_order) {
+            const scene::InstanceId first = drawables->first_of(entry.place);
+            const auto count = static_cast<std::uint32_t>(entry.region->region.object_count());
+            const auto seen = entry.region->sets
+                                  ? entry.region->sets->seen_by(camera, stream.index()[entry.place].origin)
+                                  : std::span<const std::uint64_t>();
+            for (; next < visible_ids.size() && visible_ids[next] - first < count; ++next) {
+                const std::uint32_t object = visible_ids[next] - first;
+                if (seen.empty() || (seen[object / 64] >> object % 64 & 1) != 0)
+                    frame.visible_ids.push_back(visible_ids[next]);
+            }
+        }
+        frame.occlude_us = us_since(start);
+    }
+
     Result<void> find_not_hidden(const Camera& camera, const Frustum& frustum, OccludedFrame& frame,
                                  Executor& executor) {
+        if (options.by_sets) {
+            keep_in_sets(camera, frame);
+            frame.visible = frame.visible_ids.size();
+            count_triangles(frustum, frame);
+            return {};
+        }
         const auto start = Clock::now();
         const ViewRequest request{.camera = camera, .occlusion = options.occlusion, .picture = options.picture};
         if (auto seen = stream.world().view(request, not_hidden, executor); !seen) return seen;
@@ -198,10 +230,7 @@ struct RegionPipeline::State {
         frame.visible = frame.visible_ids.size();
         if (!options.picture) {
             frame.occluders = not_hidden.occlusion_statistics().occluders_drawn;
-            if (!options.count_triangles) return {};
-            const ObjectCounts counts = counter.count(*drawables, frustum, frame.visible_ids, verdicts);
-            frame.triangles_submitted = counts.triangles_submitted;
-            frame.triangles_passed = counts.triangles_passed;
+            count_triangles(frustum, frame);
             return {};
         }
         frame.by_depth = true;
@@ -278,7 +307,7 @@ Result<FrameStatistics> RegionPipeline::run(const Camera& given, Executor& execu
         frame.triangles_passed = counts.triangles_passed;
         frame.improper = counts.improper;
     }
-    if (s.options.picture || s.options.occlusion)
+    if (s.options.picture || s.options.occlusion || s.options.by_sets)
         if (auto found = s.find_not_hidden(camera, *frustum, frame.occlusion.emplace(), executor); !found)
             return tl::unexpected(found.error());
     return frame;
@@ -310,6 +339,35 @@ std::span<const cull::Verdict> RegionPipeline::verdicts() const {
 }
 std::uint32_t RegionPipeline::place_of(scene::InstanceId instance) const {
     return state_->drawables->place_of(instance);
+}
+scene::InstanceId RegionPipeline::first_of(std::uint32_t place) const {
+    return state_->drawables->first_of(place);
+}
+scene::InstanceId RegionPipeline::instance_of(ObjectHandle object) const {
+    const World& world = state_->stream.world();
+    const auto place = world.place_of(object);
+    if (!place) return scene::kNone;
+    for (const RegionStream::Attached& entry : state_->in_order)
+        if (entry.handle == place->region) return first_of(entry.place) + place->index;
+    return scene::kNone;
+}
+std::optional<bool> RegionPipeline::seen_in_sets(scene::InstanceId instance, const Camera& camera) const {
+    const std::uint32_t place = place_of(instance);
+    const auto entry = std::find_if(state_->in_order.begin(), state_->in_order.end(),
+                                    [&](const RegionStream::Attached& attached) { return attached.place == place; });
+    if (entry == state_->in_order.end() || !entry->region->sets) return std::nullopt;
+    const auto seen = entry->region->sets->seen_by(camera, state_->stream.index()[place].origin);
+    if (seen.empty()) return std::nullopt;
+    const std::uint32_t object = instance - first_of(place);
+    return (seen[object / 64] >> object % 64 & 1) != 0;
+}
+ObjectHandle RegionPipeline::object_of(scene::InstanceId instance) const {
+    if (instance >= state_->verdicts.size()) return {};
+    const std::uint32_t place = place_of(instance);
+    for (const RegionStream::Attached& entry : state_->in_order)
+        if (entry.place == place)
+            return state_->stream.world().object_in(entry.handle, instance - first_of(place)).value_or(ObjectHandle{});
+    return {};
 }
 
 }  // namespace crofton::pipeline

@@ -20,6 +20,8 @@ struct RegionPipelineOptions {
     // As PipelineOptions; at most one of both.
     std::optional<OcclusionOptions> occlusion = {};
     std::optional<depth::PictureView> picture = {};
+    // In their place: leaves out what the regions' visible sets prove hidden. Needs `stream.sets`.
+    bool by_sets = false;
 };
 
 // Instances are numbered through all regions in the order of the index, whether a region is attached or not: as in a
@@ -51,8 +53,14 @@ class RegionPipeline {
     [[nodiscard]] const RegionStream& stream() const;
     // By instance, as of the last run().
     [[nodiscard]] std::span<const cull::Verdict> verdicts() const;
-    // The region of an instance.
+    // The region of an instance, and the instance that is a region's first object.
     [[nodiscard]] std::uint32_t place_of(scene::InstanceId instance) const;
+    [[nodiscard]] scene::InstanceId first_of(std::uint32_t place) const;
+    // Of an object in an answer of stream().world(); the other way round, null if its region is not attached.
+    [[nodiscard]] scene::InstanceId instance_of(ObjectHandle object) const;
+    [[nodiscard]] ObjectHandle object_of(scene::InstanceId instance) const;
+    // Whether a camera may see an instance of the last run(), by the sets of its region; nothing where none say it.
+    [[nodiscard]] std::optional<bool> seen_in_sets(scene::InstanceId instance, const Camera& camera) const;
 
   private:
     struct State;

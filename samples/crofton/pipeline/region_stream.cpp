@@ -62,8 +62,11 @@ class MeshLibrary {
     std::unordered_map<std::uint64_t, std::vector<std::weak_ptr<const RegionDrawMesh>>> meshes_;
 };
 
-Result<Region> prepare(bake::BakedScene&& scene, bool meshes) {
-    if (meshes) return bake::prepare_region(std::move(scene), {.triangles = false, .collides_with = 0, .region = {}});
+Result<Region> prepare(bake::BakedScene&& scene, const RegionStreamOptions& options) {
+    if (options.meshes)
+        return bake::prepare_region(
+            std::move(scene),
+            {.triangles = false, .collides_with = 0, .region = {}, .occluders = options.places_occluders});
     std::vector<RegionObject> objects(scene.instances().size());
     for (std::uint32_t i = 0; i < objects.size(); ++i) {
         objects[i].bound = scene.tree().boxes()[i];
@@ -92,7 +95,15 @@ Result<std::unique_ptr<StreamedRegion>> load(const std::string& folder, const ba
         result->mesh_of.push_back(instance.mesh);
         result->transforms.push_back(instance.node == scene::kNone ? Transform() : scene->nodes()[instance.node].world);
     }
-    auto region = prepare(std::move(*scene), options.meshes);
+    const auto layers = scene->tree().layer_masks();
+    for (std::uint32_t i = 0; i < layers.size(); ++i)
+        if (layers[i] == 0) result->hidden.push_back(i);
+    if (options.sets) {
+        auto sets = load_region_sets(folder, file, bake::checksum(bytes->bytes()), options.largest_file);
+        if (!sets) return tl::unexpected(sets.error());
+        result->sets = std::move(*sets);
+    }
+    auto region = prepare(std::move(*scene), options);
     if (!region) return fail(region.error().code, region.error().item, path + ": " + region.error().message);
     result->region = std::move(*region);
     return result;
@@ -215,7 +226,7 @@ struct RegionStream::State {
         slot.stage = Stage::attached;
         const auto first = slot.region->region.object_count() > 0 ? world.object_in(*handle, 0) : ObjectHandle{};
         if (!first) return tl::unexpected(first.error());
-        const Attached entry{first->index, place, slot.region.get()};
+        const Attached entry{first->index, place, slot.region.get(), *handle};
         attached.insert(
             std::upper_bound(attached.begin(), attached.end(), entry,
                              [](const Attached& a, const Attached& b) { return a.first_object < b.first_object; }),

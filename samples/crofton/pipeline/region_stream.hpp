@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "frame_statistics.hpp"
+#include "region_sets.hpp"
 
 namespace crofton::pipeline {
 
@@ -28,20 +29,23 @@ struct StreamedRegion {
     Region region;
     std::vector<std::shared_ptr<const RegionDrawMesh>> meshes;
     std::vector<std::uint32_t> mesh_of;
-    std::vector<Transform> transforms;  // relative to the region's origin
+    std::vector<Transform> transforms;       // relative to the region's origin
+    std::vector<std::uint32_t> hidden;       // objects that no view sees, ascending
+    std::shared_ptr<const RegionSets> sets;  // nullptr: none were baked, or they are not asked for
 };
 
 struct RegionStreamOptions {
     double distance = 0.0;  // regions within it are attached; 0: the size of an average region
-    // Objects have their meshes, with clusters and occluders; else bounds alone, as views without occlusion need them,
+    // Objects have their meshes, with clusters; else bounds alone, as views without occlusion need them,
     // which are loaded several times as fast.
     bool meshes = false;
     // A frame waits for the regions within the distance and attaches all of them: what is seen then depends on the eye
     // alone. Otherwise it attaches at most one, once that is prepared.
     bool waits = true;
-    bool places_occluders = false;  // with `waits`: also until all occluders are placed
+    bool places_occluders = false;  // with `meshes`: objects have occluders; with `waits`: waits until all are placed
     unsigned loaders = 1;           // threads
     std::uint64_t largest_file = std::uint64_t{64} << 30;
+    bool sets = false;  // regions have their visible sets, where there are some
 };
 
 // Regions are numbered as in the index.
@@ -67,6 +71,7 @@ class RegionStream {
         std::uint32_t first_object = 0;  // index in the World of the region's object 0
         std::uint32_t place = 0;
         const StreamedRegion* region = nullptr;
+        RegionHandle handle = {};
     };
     // By first_object, ascending.
     [[nodiscard]] std::span<const Attached> attached() const;

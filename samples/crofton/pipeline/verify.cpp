@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <crofton/geometry/box.hpp>
 #include <glm/geometric.hpp>
 #include <iterator>
 
@@ -45,57 +46,49 @@ class FrameReport {
     Verification& verification_;
 };
 
-class FrameVerifier : FrameReport {
+// Checks instances one by one: of a scene, or of attached regions.
+class FrameVerifier : public FrameReport {
   public:
-    FrameVerifier(const scene::Scene& scene, const Pipeline& pipeline, const FrameStatistics& frame,
+    FrameVerifier(const Drawables& drawables, std::span<const cull::Verdict> verdicts, const FrameStatistics& frame,
                   Verification& verification)
-        : FrameReport(frame, verification), scene_(scene), pipeline_(pipeline), frustum_(*frustum_of(frame.camera)) {
+        : FrameReport(frame, verification),
+          drawables_(drawables),
+          verdicts_(verdicts),
+          frustum_(*frustum_of(frame.camera)) {
         const double depth = std::isfinite(frame.camera.far_distance)
                                  ? 0.5 * (frame.camera.near_distance + frame.camera.far_distance)
                                  : 2.0 * frame.camera.near_distance + 1.0;
         interior_ = frame.camera.position + depth * glm::normalize(frame.camera.forward);
     }
 
-    void check_instances(CullMode mode) {
-        for (scene::InstanceId i = 0; i < scene_.instance_count(); ++i) {
-            if (scene_.is_removed(i)) continue;
-            const cull::Verdict verdict = pipeline_.verdicts()[i];
-            if (scene_.layer_masks()[i] == 0) {
-                if (verdict != cull::Verdict::outside)
-                    report(verification_.wrong_verdicts, "instance " + std::to_string(i) + " is hidden but was listed");
-                continue;
-            }
-            const ObjectTruth object = clip_object(i);
-            if (object.meets == Truth::yes && verdict == cull::Verdict::outside)
-                report(verification_.culled_but_visible,
-                       "instance " + std::to_string(i) + " is visible but was culled");
-            if (verdict != cull::Verdict::outside) {
-                passed_ += object.passed;
-                unclear_passed_ += object.unclear;
-                submitted_ += scene_.mesh(scene_.mesh_of(i)).triangle_count();
-            }
-            if (mode != CullMode::none) check_verdict(i, verdict);
-        }
+    void check_hidden(scene::InstanceId i) {
+        if (verdicts_[i] != cull::Verdict::outside)
+            report(verification_.wrong_verdicts, "instance " + std::to_string(i) + " is hidden but was listed");
     }
 
-    void check_pairs() {
-        const auto movers = pipeline_.movers();
-        std::vector<std::pair<std::uint32_t, std::uint32_t>> found = frame_.colliding_ids;
-        for (std::size_t a = 0; a < movers.size(); ++a)
-            for (std::size_t b = a + 1; b < movers.size(); ++b) {
-                const std::pair<std::uint32_t, std::uint32_t> pair{movers[a], movers[b]};
-                if (scene_.is_removed(pair.first) || scene_.is_removed(pair.second)) continue;
-                const Truth truth = boxes_meet(scene_.world_boxes()[pair.first], scene_.world_boxes()[pair.second]);
-                const bool listed = std::binary_search(found.begin(), found.end(), pair);
-                verification_.unclear += truth == Truth::unclear;
-                if (truth != Truth::unclear && listed != (truth == Truth::yes))
-                    report(verification_.wrong_pairs,
-                           "pair " + std::to_string(pair.first) + ", " + std::to_string(pair.second) +
-                               (listed ? " does not meet but was listed" : " meets but was not listed"));
-            }
-        if (found.size() != frame_.colliding_pairs)
-            report(verification_.wrong_pairs, "colliding_pairs is not the number of pairs listed");
+    void check_shown(scene::InstanceId i) {
+        const ObjectTruth object = clip_object(i);
+        if (object.meets == Truth::yes && verdicts_[i] == cull::Verdict::outside)
+            report(verification_.culled_but_visible, "instance " + std::to_string(i) + " is visible but was culled");
+        if (verdicts_[i] == cull::Verdict::outside) return;
+        ++listed_;
+        passed_ += object.passed;
+        unclear_passed_ += object.unclear;
+        submitted_ += drawables_.mesh(drawables_.mesh_of(i)).triangle_count();
     }
+
+    void check_box(scene::InstanceId i, const Obb& box) { check_bound(i, clip_box(frustum_, box, interior_)); }
+    void check_sphere(scene::InstanceId i, const Sphere& sphere) {
+        check_bound(i, clip_sphere(frustum_, sphere.center, sphere.radius));
+    }
+
+    // Of a region that is not attached.
+    void check_away(const std::string& name, const Aabb& bounds) {
+        if (clip_box(frustum_, obb_of(bounds), interior_).meets == Truth::yes)
+            report(verification_.culled_but_visible, name + " meets the frustum but was not attached");
+    }
+
+    void check_listed() { expect("visible", listed_, frame_.visible); }
 
     void check_counts(bool count_triangles, bool gpu_counts_exactly) {
         if (count_triangles) {
@@ -114,8 +107,8 @@ class FrameVerifier : FrameReport {
     };
 
     ObjectTruth clip_object(scene::InstanceId instance) const {
-        const TriangleMesh& mesh = scene_.mesh(scene_.mesh_of(instance));
-        const Transform& world = scene_.world(scene_.node_of(instance));
+        const TriangleMesh& mesh = drawables_.mesh(drawables_.mesh_of(instance));
+        const Transform world = drawables_.world_of(instance);
         ObjectTruth truth;
         for (std::size_t t = 0; t + 2 < mesh.indices.size(); t += 3) {
             glm::dvec3 triangle[3];
@@ -129,11 +122,8 @@ class FrameVerifier : FrameReport {
         return truth;
     }
 
-    void check_verdict(scene::InstanceId instance, cull::Verdict verdict) {
-        const Bounds& bounds = pipeline_.bounds();
-        const BodyTruth truth = bounds.spheres().empty() ? clip_box(frustum_, bounds.boxes()[instance], interior_)
-                                                         : clip_sphere(frustum_, bounds.spheres()[instance].center,
-                                                                       bounds.spheres()[instance].radius);
+    void check_bound(scene::InstanceId instance, const BodyTruth& truth) {
+        const cull::Verdict verdict = verdicts_[instance];
         const bool meets = verdict != cull::Verdict::outside, contained = verdict == cull::Verdict::inside;
         if (truth.meets == Truth::unclear || truth.contained == Truth::unclear) ++verification_.unclear;
         if (truth.meets != Truth::unclear && meets != (truth.meets == Truth::yes))
@@ -146,31 +136,103 @@ class FrameVerifier : FrameReport {
                        (contained ? " is not inside but was called so" : " is inside but was called straddling"));
     }
 
-    const scene::Scene& scene_;
-    const Pipeline& pipeline_;
+    const Drawables& drawables_;
+    std::span<const cull::Verdict> verdicts_;  // by instance
     Frustum frustum_;
     glm::dvec3 interior_{0.0};
-    std::uint64_t submitted_ = 0, passed_ = 0, unclear_passed_ = 0;
+    std::uint64_t listed_ = 0, submitted_ = 0, passed_ = 0, unclear_passed_ = 0;
 };
+
+void check_instances(const scene::Scene& scene, const Pipeline& pipeline, bool bounds_decide, FrameVerifier& verifier) {
+    const Bounds& bounds = pipeline.bounds();
+    for (scene::InstanceId i = 0; i < scene.instance_count(); ++i) {
+        if (scene.is_removed(i)) continue;
+        if (scene.layer_masks()[i] == 0) {
+            verifier.check_hidden(i);
+            continue;
+        }
+        verifier.check_shown(i);
+        if (!bounds_decide) continue;
+        if (bounds.spheres().empty())
+            verifier.check_box(i, bounds.boxes()[i]);
+        else
+            verifier.check_sphere(i, bounds.spheres()[i]);
+    }
+}
+
+void check_pairs(const scene::Scene& scene, const Pipeline& pipeline, const FrameStatistics& frame,
+                 Verification& verification, FrameVerifier& verifier) {
+    const auto movers = pipeline.movers();
+    const auto& found = frame.colliding_ids;
+    for (std::size_t a = 0; a < movers.size(); ++a)
+        for (std::size_t b = a + 1; b < movers.size(); ++b) {
+            const std::pair<std::uint32_t, std::uint32_t> pair{movers[a], movers[b]};
+            if (scene.is_removed(pair.first) || scene.is_removed(pair.second)) continue;
+            const Truth truth = boxes_meet(scene.world_boxes()[pair.first], scene.world_boxes()[pair.second]);
+            const bool listed = std::binary_search(found.begin(), found.end(), pair);
+            verification.unclear += truth == Truth::unclear;
+            if (truth != Truth::unclear && listed != (truth == Truth::yes))
+                verifier.report(verification.wrong_pairs,
+                                "pair " + std::to_string(pair.first) + ", " + std::to_string(pair.second) +
+                                    (listed ? " does not meet but was listed" : " meets but was not listed"));
+        }
+    if (found.size() != frame.colliding_pairs)
+        verifier.report(verification.wrong_pairs, "colliding_pairs is not the number of pairs listed");
+}
 
 }  // namespace
 
 void verify_frame(const scene::Scene& scene, const Pipeline& pipeline, const PipelineOptions& options,
                   const FrameStatistics& frame, bool gpu_counts_exactly, Verification& verification) {
-    FrameVerifier verifier(scene, pipeline, frame, verification);
-    verifier.check_instances(options.cull);
-    verifier.check_pairs();
+    const SceneDrawables drawables(scene);
+    FrameVerifier verifier(drawables, pipeline.verdicts(), frame, verification);
+    check_instances(scene, pipeline, options.cull != CullMode::none, verifier);
+    check_pairs(scene, pipeline, frame, verification, verifier);
     verifier.check_counts(options.count_triangles, gpu_counts_exactly);
     ++verification.frames;
 }
 
-void verify_occlusion(const scene::Scene& scene, const BothOwners& owners, std::uint64_t changed_pixels,
+void verify_frame(const RegionPipeline& pipeline, const FrameStatistics& frame, bool gpu_counts_exactly,
+                  Verification& verification) {
+    const RegionStream& stream = pipeline.stream();
+    const auto drawables = pipeline.drawables();
+    FrameVerifier verifier(*drawables, pipeline.verdicts(), frame, verification);
+    std::vector<bool> is_attached(stream.index().size());
+    for (const RegionStream::Attached& entry : stream.attached()) {
+        is_attached[entry.place] = true;
+        const StreamedRegion& region = *entry.region;
+        for (std::uint32_t i = 0; i < region.mesh_of.size(); ++i) {
+            const scene::InstanceId instance = pipeline.first_of(entry.place) + i;
+            if (std::binary_search(region.hidden.begin(), region.hidden.end(), i)) {
+                verifier.check_hidden(instance);
+                continue;
+            }
+            verifier.check_shown(instance);
+            const auto box = stream.world().box_of(stream.world().object_in(entry.handle, i).value_or(ObjectHandle{}));
+            if (box)
+                verifier.check_box(instance, *box);
+            else
+                verifier.report(verification.wrong_verdicts,
+                                "instance " + std::to_string(instance) + ": " + box.error().message);
+        }
+    }
+    for (std::uint32_t place = 0; place < is_attached.size(); ++place) {
+        const bake::RegionFile& file = stream.index()[place];
+        if (!is_attached[place])
+            verifier.check_away(file.name, {file.bounds.min + file.origin, file.bounds.max + file.origin});
+    }
+    verifier.check_listed();
+    verifier.check_counts(true, gpu_counts_exactly);
+    ++verification.frames;
+}
+
+void verify_occlusion(const Drawables& drawables, const BothOwners& owners, std::uint64_t changed_pixels,
                       bool gpu_counts_exactly, const FrameStatistics& frame, Verification& verification) {
     const OccludedFrame& result = *frame.occlusion;
     FrameReport report(frame, verification);
     const auto triangles_of = [&](std::span<const scene::InstanceId> instances) {
         std::uint64_t sum = 0;
-        for (const scene::InstanceId i : instances) sum += scene.mesh(scene.mesh_of(i)).triangle_count();
+        for (const scene::InstanceId i : instances) sum += drawables.mesh(drawables.mesh_of(i)).triangle_count();
         return sum;
     };
     std::vector<OwnerTriangle> differing;

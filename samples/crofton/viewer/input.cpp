@@ -185,10 +185,12 @@ void Session::perform(const Action& action) {
 }
 
 void Session::click(const glm::dvec2& pixel) {
-    if (loaded_->regions()) return note("over regions a click picks no object");
     const glm::dvec2 size(wanted_size_.width, wanted_size_.height);
     const glm::dvec2 place(2.0 * (pixel.x + 0.5) / size.x - 1.0, 1.0 - 2.0 * (pixel.y + 0.5) / size.y);
-    pick_ = pick(loaded_->pipeline().world(), loaded_->shapes(), drawn_ids_, controller_.camera, place);
+    if (const pipeline::RegionPipeline* const regions = loaded_->regions())
+        pick_ = pick(*regions, drawn_ids_, controller_.camera, place);
+    else
+        pick_ = pick(loaded_->pipeline().world(), loaded_->shapes(), drawn_ids_, controller_.camera, place);
     selected_ = pick_ ? pick_->instance : scene::kNone;
 }
 

@@ -49,7 +49,7 @@ void InstanceColoring::classify(const LoadedScene& loaded, const pipeline::Frame
                                 scene::InstanceId selected, std::span<const scene::NodeId> hiders) {
     counts_.clear();
     if (const pipeline::RegionPipeline* const regions = loaded.regions())
-        return classify_regions(*regions, frame, coloring);
+        return classify_regions(*regions, frame, coloring, selected);
     const auto verdicts = loaded.pipeline().verdicts();
     tint_of_.assign(verdicts.size(), kPlain);
     switch (coloring) {
@@ -106,15 +106,18 @@ void InstanceColoring::classify(const LoadedScene& loaded, const pipeline::Frame
         counts_.back().instances =
             tint_nodes(loaded.scene(), frame.visible_ids, hiders, static_cast<std::uint8_t>(counts_.size() - 1));
     }
-    if (selected < tint_of_.size()) {
-        count("selected", palette::kSelected);
-        tint_of_[selected] = static_cast<std::uint8_t>(counts_.size() - 1);
-        counts_.back().instances = 1;
-    }
+    tint_selected(selected);
+}
+
+void InstanceColoring::tint_selected(scene::InstanceId selected) {
+    if (selected >= tint_of_.size()) return;
+    count("selected", palette::kSelected);
+    tint_of_[selected] = static_cast<std::uint8_t>(counts_.size() - 1);
+    counts_.back().instances = 1;
 }
 
 void InstanceColoring::classify_regions(const pipeline::RegionPipeline& regions, const pipeline::FrameStatistics& frame,
-                                        Coloring coloring) {
+                                        Coloring coloring, scene::InstanceId selected) {
     const auto verdicts = regions.verdicts();
     tint_of_.resize(verdicts.size(), kPlain);
     if (coloring == Coloring::verdict) {
@@ -128,8 +131,22 @@ void InstanceColoring::classify_regions(const pipeline::RegionPipeline& regions,
             tint_of_[i] = static_cast<std::uint8_t>(regions.place_of(i) % kRegionColors.size());
         if (coloring == Coloring::verdict) ++counts_[tint_of_[i]].instances;
     }
-    if (coloring != Coloring::regions) return;
-    for (const glm::vec3& color : kRegionColors) count("", color);
+    if (coloring == Coloring::regions)
+        for (const glm::vec3& color : kRegionColors) count("", color);
+    if (coloring == Coloring::visible_set) classify_sets(regions, frame);
+    if (std::binary_search(frame.visible_ids.begin(), frame.visible_ids.end(), selected)) tint_selected(selected);
+}
+
+// By the sets of the object's own region, at the eye's cell.
+void InstanceColoring::classify_sets(const pipeline::RegionPipeline& regions, const pipeline::FrameStatistics& frame) {
+    count("not proved hidden", palette::kInside);
+    count("proved hidden", palette::kHidden);
+    count("in no set", palette::kCalm);
+    for (const scene::InstanceId i : frame.visible_ids) {
+        const auto seen = regions.seen_in_sets(i, frame.camera);
+        tint_of_[i] = !seen ? 2 : *seen ? 0 : 1;
+        ++counts_[tint_of_[i]].instances;
+    }
 }
 
 std::uint64_t InstanceColoring::tint_nodes(const scene::Scene& scene, std::span<const scene::InstanceId> instances,

@@ -61,7 +61,9 @@ class InstanceColoring {
     void paint_clusters(const pipeline::DrawList& list, const ClusterColoring& clusters);
     void classify_visible_set(const LoadedScene& loaded, const pipeline::FrameStatistics& frame);
     void classify_regions(const pipeline::RegionPipeline& regions, const pipeline::FrameStatistics& frame,
-                          Coloring coloring);
+                          Coloring coloring, scene::InstanceId selected);
+    void classify_sets(const pipeline::RegionPipeline& regions, const pipeline::FrameStatistics& frame);
+    void tint_selected(scene::InstanceId selected);
     void classify_occlusion(const LoadedScene& loaded, const pipeline::FrameStatistics& frame);
 
     std::vector<std::uint8_t> tint_of_;  // by instance: index into counts_, kPlain for the vertices' own colours

@@ -47,14 +47,17 @@ const convex::Hull* InstanceShapes::hull_of(scene::InstanceId instance, TreeAndH
     return entry.hull ? &*entry.hull : nullptr;
 }
 
-std::optional<mesh::TriangleHit> InstanceShapes::raycast(const Ray& ray, scene::InstanceId instance) {
-    const Transform& world = scene_->world(scene_->node_of(instance));
+std::optional<mesh::TriangleHit> raycast_placed(const Ray& ray, const mesh::MeshTree& tree, const Transform& world) {
     const glm::dmat3 inverse = glm::inverse(world.linear);
     for (int k = 0; k < 9; ++k)
         if (!std::isfinite(inverse[k / 3][k % 3])) return std::nullopt;
+    return mesh::raycast(Ray{inverse * (ray.origin - world.translation), inverse * ray.direction, ray.max_t}, tree);
+}
+
+std::optional<mesh::TriangleHit> InstanceShapes::raycast(const Ray& ray, scene::InstanceId instance) {
     const mesh::MeshTree* tree = tree_of(instance, of_mesh_[scene_->mesh_of(instance)]);
     if (tree == nullptr) return std::nullopt;
-    return mesh::raycast(Ray{inverse * (ray.origin - world.translation), inverse * ray.direction, ray.max_t}, *tree);
+    return raycast_placed(ray, *tree, scene_->world(scene_->node_of(instance)));
 }
 
 std::vector<TriangleContacts> InstanceShapes::triangle_contacts(std::span<const InstancePair> pairs) {

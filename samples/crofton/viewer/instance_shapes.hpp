@@ -30,13 +30,17 @@ struct HullContacts {
 
 using InstancePair = std::pair<scene::InstanceId, scene::InstanceId>;
 
+// Returns the nearest triangle of a mesh that stands there. A transform without an inverse is not hit.
+[[nodiscard]] std::optional<mesh::TriangleHit> raycast_placed(const Ray& ray, const mesh::MeshTree& tree,
+                                                              const Transform& world);
+
 // Trees and hulls are made when first asked for: most visits need few. One of a mesh serves all instances that turn and
 // move it; what is scaled, sheared or mirrored has its own. The scene must outlive this; its meshes do not change.
 class InstanceShapes {
   public:
     explicit InstanceShapes(const scene::Scene& scene);
 
-    // The nearest triangle of an instance. A transform without an inverse is not hit.
+    // As raycast_placed().
     [[nodiscard]] std::optional<mesh::TriangleHit> raycast(const Ray& ray, scene::InstanceId instance);
     // Returns the pairs whose triangles overlap.
     [[nodiscard]] std::vector<TriangleContacts> triangle_contacts(std::span<const InstancePair> pairs);

@@ -94,7 +94,8 @@ Result<std::unique_ptr<LoadedScene>> LoadedScene::load(const SceneRequest& reque
 
 Result<std::unique_ptr<LoadedScene>> LoadedScene::load_regions(const SceneRequest& request, const Settings& settings) {
     auto regions = pipeline::RegionPipeline::open(
-        request.source, {.stream = {.waits = request.waits_for_regions, .largest_file = request.limits.bytes}});
+        request.source,
+        {.stream = {.waits = request.waits_for_regions, .largest_file = request.limits.bytes, .sets = true}});
     if (!regions) return tl::unexpected(std::move(regions.error()));
     std::unique_ptr<LoadedScene> loaded(new LoadedScene({request.source, scene::Scene(), {}, {}, {}, {}}));
     loaded->regions_.emplace(std::move(*regions));

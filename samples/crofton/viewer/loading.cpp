@@ -170,14 +170,17 @@ void Session::leave_out_what_regions_lack() {
     if (!loaded_->regions()) return;
     Settings& s = settings_;
     const bool shows = s.coloring == Coloring::lit || s.coloring == Coloring::verdict ||
-                       s.coloring == Coloring::shape || s.coloring == Coloring::regions;
+                       s.coloring == Coloring::shape || s.coloring == Coloring::regions ||
+                       s.coloring == Coloring::visible_set;
     if (shows && !s.compare && !s.outside && !s.bounds && !s.hulls && !s.depth_buffer && !s.method.occlude &&
         s.cascades == 1 && s.tree_level < 0)
         return;
     if (!shows) s.coloring = Coloring::regions;
     s.compare = s.outside = s.bounds = s.hulls = s.depth_buffer = s.method.occlude = false;
     s.cascades = 1, s.tree_level = -1;
-    note("over regions there are the colourings lit, verdict, shape and regions, and no overlays of objects");
+    note(
+        "over regions there are the colourings lit, verdict, shape, visible set and regions, and no overlays of "
+        "objects");
 }
 
 Result<void> Session::cut_clusters() {

@@ -64,6 +64,11 @@ void Overlay::draw(LineList& lines, const Settings& settings, const LoadedScene&
         lines.box(loaded.pipeline().bounds().boxes()[selected], kSelection);
         lines.axes(scene.world_boxes()[selected]);
     }
+    if (const pipeline::RegionPipeline* const regions = loaded.regions())
+        if (const auto box = regions->stream().world().box_of(regions->object_of(selected))) {
+            legend_.push_back({"its bound", kSelection});
+            lines.box(*box, kSelection);
+        }
     const double range = 1.5 * glm::length(loaded.extent().half_extents());
     if (show_frustum && cascades.size() < 2) {
         legend_.push_back({"view that culls", kFrustum});

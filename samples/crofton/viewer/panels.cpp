@@ -57,6 +57,7 @@ void shape_legend() {
 }
 
 void visible_set_hint(const PanelInput& input) {
+    if (input.loaded.regions()) return ImGui::TextWrapped("sets of regions: 'crofton pvs' on their folder");
     if (input.loaded.pvs() == nullptr)
         ImGui::TextWrapped("no visible sets: bake them with 'crofton pvs', and show them with --baked FILE");
     else if (input.loaded.pvs()->find_cell(input.frame.camera.position) == pvs::kNoCell)

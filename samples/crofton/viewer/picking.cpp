@@ -5,6 +5,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <map>
+#include <utility>
 
 #include "pipeline/pipeline.hpp"
 
@@ -23,23 +25,50 @@ Ray ray_through(const Camera& camera, const glm::dvec2& cursor) {
             glm::normalize(to_world * glm::dvec3(cursor.x * half * camera.aspect, cursor.y * half, -1.0))};
 }
 
-}  // namespace
-
-std::optional<Pick> pick(const World& world, InstanceShapes& shapes, std::span<const scene::InstanceId> candidates,
-                         const Camera& camera, const glm::dvec2& cursor) {
-    Ray ray = ray_through(camera, cursor);
-    Vector<ObjectHit> hits;  // of bounds, the nearest first
-    world.raycast_all(ray, hits, pipeline::kSeenLayer);
+// Of all hits of bounds, the nearest first, whose triangles a ray meets.
+template <class InstanceOf, class Raycast>
+std::optional<Pick> nearest_of(std::span<const ObjectHit> hits, std::span<const scene::InstanceId> candidates,
+                               const Ray& ray, InstanceOf instance_of, Raycast raycast) {
     std::optional<Pick> nearest;
     for (const ObjectHit& hit : hits) {
         if (nearest && hit.t > nearest->distance) break;
-        const auto instance = static_cast<scene::InstanceId>(hit.user);
+        const scene::InstanceId instance = instance_of(hit);
         if (!std::binary_search(candidates.begin(), candidates.end(), instance)) continue;
-        const auto found = shapes.raycast(ray, instance);
+        const std::optional<mesh::TriangleHit> found = raycast(instance);
         if (!found || (nearest && found->t >= nearest->distance)) continue;
         nearest = Pick{instance, found->triangle, found->t, ray.origin + found->t * ray.direction};
     }
     return nearest;
+}
+
+}  // namespace
+
+std::optional<Pick> pick(const World& world, InstanceShapes& shapes, std::span<const scene::InstanceId> candidates,
+                         const Camera& camera, const glm::dvec2& cursor) {
+    const Ray ray = ray_through(camera, cursor);
+    Vector<ObjectHit> hits;
+    world.raycast_all(ray, hits, pipeline::kSeenLayer);
+    return nearest_of(
+        hits, candidates, ray, [](const ObjectHit& hit) { return static_cast<scene::InstanceId>(hit.user); },
+        [&](scene::InstanceId instance) { return shapes.raycast(ray, instance); });
+}
+
+std::optional<Pick> pick(const pipeline::RegionPipeline& regions, std::span<const scene::InstanceId> candidates,
+                         const Camera& camera, const glm::dvec2& cursor) {
+    const Ray ray = ray_through(camera, cursor);
+    Vector<ObjectHit> hits;
+    regions.stream().world().raycast_all(ray, hits);
+    const auto drawables = regions.drawables();
+    std::map<scene::MeshId, std::optional<mesh::MeshTree>> trees;  // meshes come and go with regions: of this click
+    return nearest_of(
+        hits, candidates, ray, [&](const ObjectHit& hit) { return regions.instance_of(hit.object); },
+        [&](scene::InstanceId instance) -> std::optional<mesh::TriangleHit> {
+            const auto [entry, is_new] = trees.try_emplace(drawables->mesh_of(instance));
+            if (is_new)
+                if (auto tree = mesh::MeshTree::build(drawables->mesh(entry->first))) entry->second = std::move(*tree);
+            if (!entry->second) return std::nullopt;
+            return raycast_placed(ray, *entry->second, drawables->world_of(instance));
+        });
 }
 
 }  // namespace crofton::viewer

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "instance_shapes.hpp"
+#include "pipeline/region_pipeline.hpp"
 
 namespace crofton::viewer {
 
@@ -20,6 +21,10 @@ struct Pick {
 // The nearest triangle of `candidates` on the ray through `cursor`, given in [−1, 1]² with y up. `world` has bounds of
 // the instances as its objects of pipeline::kSeenLayer, with their numbers as user data. Candidates ascend.
 [[nodiscard]] std::optional<Pick> pick(const World& world, InstanceShapes& shapes,
+                                       std::span<const scene::InstanceId> candidates, const Camera& camera,
+                                       const glm::dvec2& cursor);
+// The same among regions that are attached.
+[[nodiscard]] std::optional<Pick> pick(const pipeline::RegionPipeline& regions,
                                        std::span<const scene::InstanceId> candidates, const Camera& camera,
                                        const glm::dvec2& cursor);
 

@@ -77,7 +77,38 @@ void show_hiders(const PanelInput& input, PanelWish& wish) {
     if (input.hiders.size() > kShown) ImGui::TextDisabled("  and by %zu more", input.hiders.size() - kShown);
 }
 
+void show_box(const Obb& box) {
+    const glm::vec3 edge = 2.0f * box.half_extents;
+    ImGui::Text("box %.2f \u00d7 %.2f \u00d7 %.2f m", static_cast<double>(edge.x), static_cast<double>(edge.y),
+                static_cast<double>(edge.z));
+    ImGui::Text("centre %.2f %.2f %.2f m", box.center.x, box.center.y, box.center.z);
+    ImGui::Text("volume %.3g m\u00b3, surface %.3g m\u00b2", volume(box), surface_area(box));
+    ImGui::Text("sum of its three edges %.3g m", edge_sum(box));
+}
+
+void show_pick(const PanelInput& input) {
+    if (input.pick && input.pick->instance == input.selected)
+        ImGui::Text("picked: triangle %u, %.2f m away", input.pick->triangle, input.pick->distance);
+}
+
+void show_selection_in(const pipeline::RegionPipeline& regions, const PanelInput& input) {
+    const auto box = regions.stream().world().box_of(regions.object_of(input.selected));
+    if (!box) return ImGui::TextDisabled("left click picks an object");
+    const std::uint32_t place = regions.place_of(input.selected);
+    const auto drawables = regions.drawables();
+    ImGui::PushTextWrapPos(0.0f);
+    ImGui::Text("object %u of %s", input.selected - regions.first_of(place),
+                regions.stream().index()[place].name.c_str());
+    ImGui::Text("%s triangles, bound %s",
+                with_thousands(drawables->mesh(drawables->mesh_of(input.selected)).triangle_count()).c_str(),
+                verdict_name(regions.verdicts()[input.selected]));
+    show_box(*box);
+    show_pick(input);
+    ImGui::PopTextWrapPos();
+}
+
 void show_selection(const PanelInput& input, PanelWish& wish) {
+    if (input.loaded.regions()) return show_selection_in(*input.loaded.regions(), input);
     const scene::Scene& scene = input.loaded.scene();
     const scene::InstanceId instance = input.selected;
     if (instance >= scene.instance_count() || scene.is_removed(instance)) {
@@ -92,14 +123,8 @@ void show_selection(const PanelInput& input, PanelWish& wish) {
     ImGui::Text("%s triangles, bound %s%s", with_thousands(scene.mesh(mesh).triangle_count()).c_str(),
                 verdict_name(input.loaded.pipeline().verdicts()[instance]), input.hiders.empty() ? "" : ", hidden");
     show_hiders(input, wish);
-    const glm::vec3 edge = 2.0f * box.half_extents;
-    ImGui::Text("box %.2f \u00d7 %.2f \u00d7 %.2f m", static_cast<double>(edge.x), static_cast<double>(edge.y),
-                static_cast<double>(edge.z));
-    ImGui::Text("centre %.2f %.2f %.2f m", box.center.x, box.center.y, box.center.z);
-    ImGui::Text("volume %.3g m\u00b3, surface %.3g m\u00b2", volume(box), surface_area(box));
-    ImGui::Text("sum of its three edges %.3g m", edge_sum(box));
-    if (input.pick && input.pick->instance == instance)
-        ImGui::Text("picked: triangle %u, %.2f m away", input.pick->triangle, input.pick->distance);
+    show_box(box);
+    show_pick(input);
     ImGui::PopTextWrapPos();
 }
 

@@ -160,6 +160,12 @@ TEST_SUITE("bake/baked_region") {
             if (!region.occluders_of(mesh).empty()) CHECK(village.scene.mesh_of(i) == 0);
         }
         CHECK(with_occluders == 20);
+        const Region plain = prepare_region(*baked, {.triangles = false, .occluders = false}).value();
+        for (std::uint32_t i = 0; i < plain.object_count(); ++i) {
+            if (i == 7) continue;
+            CHECK(plain.occluders_of(plain.mesh_of(i)).empty());
+            CHECK(plain.clusters_of(plain.mesh_of(i)) != nullptr);
+        }
         World world({.pairs = false});
         world.attach(region, {}).value();
         world.update().value();

@@ -356,8 +356,15 @@ TEST_SUITE("cli/frames") {
         const CliRun hidden = run_cli(fly + "- --occlude --occlusion occluders");
         REQUIRE_MESSAGE(hidden.status == 0, hidden.err);
         CHECK(hidden.json()["summary"]["mean_occlusion_visible"] <= hidden.json()["summary"]["mean_visible"]);
+        for (const char* how : {"", " --occlude", " --occlude --occlusion occluders"}) {
+            const CliRun checked = run_cli("frames " + folder + " --frames 8 --verify --json -" + how);
+            REQUIRE_MESSAGE(checked.status == 0, checked.err);
+            CHECK(checked.json()["summary"]["verified"] == true);
+            CHECK(checked.json()["summary"]["mismatches"] == 0);
+        }
         // What does not fit is refused, and a damaged region is named.
-        for (const char* wrong : {"--verify", "--bounds aabb", "--cull flat", "--map MAP01", "--camera nowhere"})
+        for (const char* wrong :
+             {"--verify --real-time", "--bounds aabb", "--cull flat", "--map MAP01", "--camera nowhere"})
             CHECK(run_cli(fly + "- " + wrong).status == 2);
         CHECK(says(run_cli(kSmallTown + "--real-time").err, "--real-time"));
         const std::string victim = folder + "/r2_2.crofton";

@@ -234,4 +234,70 @@ TEST_SUITE("cli/pvs") {
         write_contents(path, text);
         CHECK(open_cells() >= 12);
     }
+    TEST_CASE("sets of regions hide what no picture shows, in one run or in shards, and follow their regions") {
+        const std::string folder = scratch().file("set_regions"), shards = scratch().file("set_shards"),
+                          cameras = scratch().file("set_cameras.json"),
+                          sets = " --cells 8x2x8 --reach 20 --epsilon 0.02 --near 0.3 ",
+                          look = "frames '" + folder + "' --camera '" + cameras +
+                                 "' --size 160x90 --occlude --occlusion sets --json - ";
+        REQUIRE(run_cli("bake town --instances 1200 --regions 3x2 --folder '" + folder + "'").status == 0);
+        std::filesystem::copy(folder, shards);
+        nlohmann::json path;
+        for (int i = 0; i < 16; ++i)
+            path["cameras"].push_back({{"position", {-60.0 + 9.0 * i, 1.7, 25.0 - 4.0 * i}},
+                                       {"forward", {i % 3 - 1.0, -0.02, i % 2 == 0 ? 1.0 : -1.0}},
+                                       {"near_distance", 0.1}});
+        write_contents(cameras, path.dump());
+        // Without sets nothing is hidden.
+        const CliRun before = run_cli(look);
+        REQUIRE_MESSAGE(before.status == 0, before.err);
+        CHECK(before.json()["summary"]["mean_occlusion_visible"] == before.json()["summary"]["mean_visible"]);
+        const CliRun baked = run_cli("pvs '" + folder + "'" + sets + "--threads 2 --json -");
+        REQUIRE_MESSAGE(baked.status == 0, baked.err);
+        const std::size_t regions = baked.json()["regions"].get<std::size_t>();
+        CHECK(baked.json()["regions_baked"] == regions);
+        CHECK(baked.json()["hidden"].get<double>() > 0.02);
+        const CliRun seen = run_cli(look + "--verify");
+        REQUIRE_MESSAGE(seen.status == 0, seen.err);
+        CHECK(seen.json()["summary"]["mismatches"] == 0);
+        CHECK(seen.json()["summary"]["mean_occlusion_visible"] < before.json()["summary"]["mean_visible"]);
+        // Nothing is baked twice, and shards write the same bytes.
+        CHECK(run_cli("pvs '" + folder + "'" + sets + "--json -").json()["regions_baked"] == 0);
+        for (const char* shard : {"0/2", "1/2"})
+            REQUIRE(run_cli("pvs '" + shards + "'" + sets + "--shard " + shard).status == 0);
+        std::size_t files = 0;
+        std::string one;
+        for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+            if (entry.path().string().find(".sets.crofton") == std::string::npos) continue;
+            ++files;
+            one = entry.path().filename().string();
+            CHECK(contents_of(entry.path().string()) == contents_of(shards + "/" + one));
+        }
+        CHECK(files == regions);
+        // A damaged file of sets, and one of another region, are named.
+        const std::string good = contents_of(folder + "/" + one);
+        std::string bad = good;
+        bad[bad.size() / 2] ^= 1;
+        write_contents(folder + "/" + one, bad);
+        CHECK(run_cli(look).status == 2);
+        CHECK(run_cli(look).err.find(one) != std::string::npos);
+        for (const auto& entry : std::filesystem::directory_iterator(shards)) {
+            const std::string other = entry.path().filename().string();
+            if (other.find(".sets.crofton") != std::string::npos && other != one)
+                write_contents(folder + "/" + one, contents_of(entry.path().string()));
+        }
+        const CliRun wrong = run_cli(look);
+        CHECK(wrong.status == 2);
+        CHECK_MESSAGE(wrong.err.find("crofton pvs") != std::string::npos, wrong.err);
+        // A region that is baked anew loses its sets; without the flag nobody reads them.
+        CHECK(run_cli("frames '" + folder + "' --frames 2 --no-draw").status == 0);
+        REQUIRE(run_cli("bake town --instances 1200 --no-occluders --regions 3x2 --folder '" + folder + "'").status ==
+                0);
+        CHECK_FALSE(std::filesystem::exists(folder + "/" + one));
+        CHECK(run_cli(look).status == 0);
+        for (const char* refused : {"--out x.crofton", "--views 3", "--map E1M1", "--cells rooms", "--shard 2/2"})
+            CHECK(run_cli("pvs '" + folder + "' " + refused).status == 2);
+        CHECK(run_cli("frames town --occlude --occlusion sets").status == 2);
+        CHECK(run_cli("pvs " + level() + " --reach 3").status == 2);
+    }
 }

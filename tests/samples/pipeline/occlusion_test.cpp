@@ -233,7 +233,7 @@ TEST_SUITE("pipeline/occlusion") {
         const auto check = [&](const FrameStatistics& tampered, std::span<const OwnerTriangle> of_all,
                                std::uint64_t changed) {
             Verification verification;
-            verify_occlusion(yard.scene, {of_all, owners}, changed, true, tampered, verification);
+            verify_occlusion(SceneDrawables(yard.scene), {of_all, owners}, changed, true, tampered, verification);
             return verification;
         };
         CHECK(check(*frame, owners, 0).mismatches() == 0);

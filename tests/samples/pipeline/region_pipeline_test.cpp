@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <box_mesh.hpp>
 #include <chrono>
-#include <crofton/bake/region_files.hpp>
-#include <filesystem>
+#include <region_folder.hpp>
 #include <thread>
 
 #include "commands/region_state.hpp"
 #include "pipeline/region_pipeline.hpp"
+#include "pipeline/verify.hpp"
 
 using namespace crofton;
 
@@ -38,25 +38,8 @@ assets::SceneSource row_of_cells() {
     return source;
 }
 
-// A folder of regions that is gone after the test.
-struct Regions {
-    std::string path = (std::filesystem::temp_directory_path() / "crofton-flight-XXXXXX").string();
-
-    explicit Regions(const scene::Scene& scene) {
-        REQUIRE(mkdtemp(path.data()) != nullptr);
-        const auto regions = bake::SceneRegions::split(scene, kCells, 1).value();
-        std::vector<bake::RegionFile> index;
-        for (std::size_t i = 0; i < regions.size(); ++i) {
-            const auto file = regions.bake(i).value();
-            index.push_back(regions.region(i));
-            index.back().bytes = file.size();
-            REQUIRE(bake::write_file(path + "/" + index.back().name, file));
-        }
-        REQUIRE(bake::write_file(path + "/" + bake::kRegionIndexName, bake::bake_region_index(index).value()));
-    }
-    ~Regions() { std::filesystem::remove_all(path); }
-    Regions(const Regions&) = delete;
-    Regions& operator=(const Regions&) = delete;
+struct Regions : testing::RegionFolder {
+    explicit Regions(const scene::Scene& scene) : RegionFolder(scene, kCells, 1) {}
 };
 
 std::size_t held_meshes(const pipeline::Drawables& drawables) {
@@ -109,6 +92,53 @@ TEST_SUITE("pipeline/region_pipeline") {
         revision = flight.mesh_revision();
         REQUIRE(flight.run(camera, serial_executor()));
         CHECK(flight.mesh_revision() == revision);
+    }
+
+    TEST_CASE("frames over regions agree with clipping every triangle of every object, and a wrong frame does not") {
+        assets::SceneSource source = row_of_cells();
+        for (const scene::InstanceId hidden : {7u, 23u}) REQUIRE(source.scene.set_instance_layers(hidden, 0));
+        source.scene.update();
+        const Regions folder(source.scene);
+        pipeline::RegionPipelineOptions options;
+        options.stream.distance = 2.0 * kCell;
+        auto flight = pipeline::RegionPipeline::open(folder.path, options).value();
+        const auto verified = [&](const pipeline::FrameStatistics& frame) {
+            pipeline::Verification verification;
+            pipeline::verify_frame(flight, frame, true, verification);
+            return verification;
+        };
+        Camera camera;
+        std::uint64_t seen = 0;
+        for (std::uint32_t step = 0; step < 2 * kCells; ++step) {
+            camera.position = {0.5 * kCell * step, 1.0, 0.0};
+            camera.forward = {step % 3 == 0 ? -1.0 : 1.0, -0.05, 0.2 * (step % 5) - 0.4};
+            const auto frame = flight.run(camera, serial_executor()).value();
+            const pipeline::Verification right = verified(frame);
+            CHECK_MESSAGE(right.mismatches() == 0, right.messages.size());
+            CHECK(right.frames == 1);
+            seen += frame.visible;
+        }
+        CHECK(seen > 100);
+        camera.position = {0.5 * kCell, 1.0, 0.0};
+        camera.forward = {1.0, 0.0, 0.0};
+        const auto frame = flight.run(camera, serial_executor()).value();
+        REQUIRE(frame.visible > 2);
+        pipeline::FrameStatistics wrong = frame;
+        ++wrong.visible;
+        CHECK(verified(wrong).wrong_counts == 1);
+        wrong = frame;
+        ++wrong.triangles_passed;
+        CHECK(verified(wrong).wrong_counts == 1);
+        // Another camera: what it sees was culled, and so was a region that is not attached.
+        wrong = frame;
+        wrong.camera.position.x += 10.0;
+        CHECK(verified(wrong).wrong_verdicts > 0);
+        wrong = frame;
+        wrong.camera.far_distance = 1000.0;
+        const pipeline::Verification far = verified(wrong);
+        CHECK(far.culled_but_visible > 0);
+        CHECK(std::any_of(far.messages.begin(), far.messages.end(),
+                          [](const std::string& m) { return m.find("was not attached") != std::string::npos; }));
     }
 
     TEST_CASE("a bake is resumed only if nothing differs on which the bytes of its files depend") {

@@ -2,6 +2,7 @@
 // Picking and contacts: what the viewer asks of instances' triangles and hulls.
 #include <doctest/doctest.h>
 #include <box_mesh.hpp>
+#include <region_folder.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -146,6 +147,54 @@ TEST_SUITE("viewer/picking") {
             CHECK(hit->distance == doctest::Approx(expected).epsilon(1e-6));
         }
         CHECK(picked > 300);
+    }
+    TEST_CASE("1,000 clicks over regions pick what testing every triangle of the whole scene picks") {
+        std::mt19937 random(8);
+        const auto uniform = [&](double low, double high) {
+            return low + (high - low) * static_cast<double>(random()) / 4294967296.0;
+        };
+        scene::Scene scene;
+        const auto mesh = scene.add_mesh(testing::cube_mesh(0.5f));
+        REQUIRE(mesh);
+        std::vector<scene::InstanceId> all;
+        for (scene::InstanceId i = 0; i < 200; ++i) {
+            glm::dmat3 linear;
+            for (int k = 0; k < 9; ++k) linear[k / 3][k % 3] = uniform(-1.5, 1.5);
+            place(scene, *mesh, {linear, {uniform(-30, 30), uniform(-5, 5), uniform(-30, 30)}});
+            all.push_back(i);
+        }
+        scene.update();
+        const testing::RegionFolder folder(scene, 4, 3);
+        auto regions = pipeline::RegionPipeline::open(folder.path, {.stream = {.distance = 40.0}}).value();
+        int picked = 0;
+        for (int click = 0; click < 1000; ++click) {
+            Camera camera;
+            camera.position = {uniform(-10, 10), uniform(-2, 2), uniform(-10, 10)};
+            camera.forward = {uniform(-1, 1), 0.0, uniform(-1, 1)};
+            const auto frame = regions.run(camera, serial_executor()).value();
+            const glm::dvec2 cursor(uniform(-1, 1), uniform(-1, 1));
+            const auto hit = pick(regions, frame.visible_ids, camera, cursor);
+            const double half = std::tan(0.5 * camera.fov_y);
+            const glm::dvec3 back = -glm::normalize(camera.forward),
+                             right = glm::normalize(glm::cross(camera.up, back)), up = glm::cross(back, right);
+            const Ray ray{camera.position,
+                          glm::normalize(cursor.x * half * camera.aspect * right + cursor.y * half * up - back)};
+            const double expected = nearest_triangle(scene, all, ray);
+            // Regions are attached as far as 40, in a view that ends within.
+            if (!hit) CHECK(expected > frame.camera.far_distance);
+            if (!hit) continue;
+            ++picked;
+            CHECK(hit->distance == doctest::Approx(expected).epsilon(1e-6));
+            // The region and its object by name are the instance that was baked there.
+            const std::uint32_t place = regions.place_of(hit->instance);
+            CHECK(regions.instance_of(regions.object_of(hit->instance)) == hit->instance);
+            CHECK(hit->instance - regions.first_of(place) < regions.stream().index()[place].objects);
+            const auto at = regions.drawables()->world_of(hit->instance).translation;
+            CHECK(glm::distance(at, hit->at) < 3.0);
+        }
+        CHECK(picked > 200);
+        CHECK(regions.instance_of({}) == scene::kNone);
+        CHECK(regions.object_of(scene::kNone).is_null());
     }
 }
 

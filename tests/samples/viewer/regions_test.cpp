@@ -22,7 +22,14 @@ TEST_SUITE("viewer/regions") {
                              shot(7, "east.png"),
                              set(8, {{"panels", true}, {"coloring", "clusters"}, {"bounds", true}, {"cascades", 3}}),
                              {{"frame", 9}, {"click", {240, 135}}},
-                             shot(9, "panels.png")};
+                             shot(9, "panels.png"),
+                             set(10, {{"panels", false}, {"coloring", "lit"}}),
+                             eye(10, -150),
+                             {{"frame", 11}, {"click", {240, 135}}},
+                             shot(12, "picked.png"),
+                             {{"frame", 13}, {"camera", {{"position", {-150, 30, 0}}, {"forward", {0, 1, 0.1}}}}},
+                             {{"frame", 14}, {"click", {240, 135}}},
+                             shot(15, "sky.png")};
         const ViewRun result = view(events, "'" + folder + "'", false);
         check_clean(result);
         const json& west = picture(result, "west.png");
@@ -48,8 +55,10 @@ TEST_SUITE("viewer/regions") {
         CHECK(panels["settings"]["coloring"] == "regions");
         CHECK(panels["settings"]["bounds"] == false);
         CHECK(panels["messages"].dump().find("over regions") != std::string::npos);
-        CHECK(panels["messages"].dump().find("over regions a click picks no object") != std::string::npos);
         CHECK_FALSE(panels.contains("selected"));
+        REQUIRE(picture(result, "picked.png").contains("selected"));
+        CHECK(tinted(picture(result, "picked.png"), "selected") == 1);
+        CHECK_FALSE(picture(result, "sky.png").contains("selected"));
         // The same script shows the same picture again.
         const Pixels before(scratch().file("east.png"));
         check_clean(view(events, "'" + folder + "'", false));

@@ -473,7 +473,8 @@ void live(const glm::dvec3& far, NearMisses& random, int steps, Ask ask) {
 TEST_SUITE("world/regions") {
     TEST_CASE("in a random life of regions and objects, every answer is that of a World with each object by itself") {
         for (const glm::dvec3 far :
-             {glm::dvec3(0.0), glm::dvec3(1e7, -2e6, 0.25), glm::dvec3(1e7 + 0.1, 3e6 + 0.3, 0.7)}) {
+             {glm::dvec3(0.0), glm::dvec3(1e7, -2e6, 0.25), glm::dvec3(1e7 + 0.1, 3e6 + 0.3, 0.7),
+              glm::dvec3(-0.99e9, 3e8 + 0.3, 0.99e9 + 0.1)}) {
             ViewResult visible;
             MultiViewResult many;
             NearMisses random(71);

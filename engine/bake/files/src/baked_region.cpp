@@ -9,11 +9,11 @@ namespace {
 constexpr std::uint32_t kNone = scene::kNone;
 
 // The kind of occluders that each instance has; kNone: none.
-Vector<std::uint32_t> occluders_of_instances(const BakedScene& scene) {
+Vector<std::uint32_t> occluders_of_instances(const BakedScene& scene, const BakedRegionOptions& options) {
     const std::span<const InstanceRecord> instances = scene.instances();
     const std::span<const std::uint32_t> layers = scene.tree().layer_masks();
     Vector<std::uint32_t> kinds(instances.size(), kNone);
-    if (!scene.occluders()) return kinds;
+    if (!scene.occluders() || !options.occluders) return kinds;
     Vector<std::uint32_t> of_node(scene.nodes().size(), kNone), first(scene.nodes().size(), kNone);
     for (const OccludingNode& occluding : scene.occluders()->nodes) of_node[occluding.node] = occluding.kind;
     for (std::uint32_t i = 0; i < instances.size(); ++i) {
@@ -69,7 +69,7 @@ Result<Region> prepare(const BakedScene& scene, boxtree::BoxTree* tree, const Ba
     return detail::recover([&]() -> Result<Region> {
         const std::span<const InstanceRecord> instances = scene.instances();
         const std::span<const std::uint32_t> layers = scene.tree().layer_masks();
-        const Vector<std::uint32_t> kinds = occluders_of_instances(scene);
+        const Vector<std::uint32_t> kinds = occluders_of_instances(scene, options);
         Meshes meshes(scene, options);
         Vector<RegionObject> objects(instances.size());
         for (std::uint32_t i = 0; i < instances.size(); ++i) {

@@ -56,9 +56,9 @@ Result<ShapeId> OccluderSet::Data::add(Result<Shape> shape) {
 Result<OccluderId> OccluderSet::Data::add(Result<Occluder> occluder) {
     if (!occluder) return tl::unexpected(std::move(occluder.error()));
     if (occluder->shape != kNone) ++shape_uses[occluder->shape];
-    if (!free_occluders.empty()) {
-        const OccluderId id = free_occluders.back();
-        free_occluders.pop_back();
+    if (first_free != kNone) {
+        const OccluderId id = first_free;
+        first_free = occluders[id].next_free;
         occluders[id] = *occluder;
         return id;
     }
@@ -87,7 +87,7 @@ Result<void> OccluderSet::Data::check_shape(ShapeId id) const {
 
 // Returns the id of the next occluder, for error messages.
 std::uint64_t OccluderSet::Data::next_id() const {
-    return free_occluders.empty() ? occluders.size() : free_occluders.back();
+    return first_free == kNone ? occluders.size() : first_free;
 }
 
 Result<ShapeId> OccluderSet::add_convex(std::span<const glm::vec3> points) {
@@ -133,7 +133,8 @@ Result<void> OccluderSet::remove(OccluderId occluder) {
     removed = {};
     removed.removed = true;
     removed.enabled = false;
-    data_->free_occluders.push_back(occluder);
+    removed.next_free = data_->first_free;
+    data_->first_free = occluder;
     return {};
 }
 
@@ -158,7 +159,7 @@ void OccluderSet::clear() {
     data_->shapes.clear();
     data_->shape_uses.clear();
     data_->free_shapes.clear();
-    data_->free_occluders.clear();
+    data_->first_free = kNone;
 }
 
 }  // namespace crofton::occlude

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The data of an OccluderSet, for drawing it.
 #pragma once
+#include <crofton/core/paged_vector.hpp>
 #include <crofton/occlude/occluder.hpp>
 
 #include "shape.hpp"
@@ -8,7 +9,8 @@
 namespace crofton::occlude {
 
 struct Occluder {
-    ShapeId shape = kNone;  // kNone: the box
+    ShapeId shape = kNone;         // kNone: the box
+    OccluderId next_free = kNone;  // of one that is removed
     bool enabled = true;
     bool removed = false;
     bool mirrored = false;  // the transform is a reflection
@@ -17,11 +19,12 @@ struct Occluder {
 };
 
 struct OccluderSet::Data {
+    using Occluders = PagedVector<Occluder, 512>;
     Vector<Shape> shapes;
     Vector<std::uint32_t> shape_uses;  // occluders of each shape; kNone: the shape is removed
-    Vector<Occluder> occluders;
+    Occluders occluders;
     Vector<ShapeId> free_shapes;
-    Vector<OccluderId> free_occluders;
+    OccluderId first_free = kNone;
 
     Result<ShapeId> add(Result<Shape> shape);
     Result<OccluderId> add(Result<Occluder> occluder);
@@ -33,7 +36,9 @@ struct OccluderSet::Data {
 
 struct OccluderStorage {
     [[nodiscard]] static std::span<const Shape> shapes(const OccluderSet& set) { return set.data_->shapes; }
-    [[nodiscard]] static std::span<const Occluder> occluders(const OccluderSet& set) { return set.data_->occluders; }
+    [[nodiscard]] static const OccluderSet::Data::Occluders& occluders(const OccluderSet& set) {
+        return set.data_->occluders;
+    }
 };
 
 }  // namespace crofton::occlude

@@ -31,7 +31,7 @@ void prepare_range(const PixelMap& map, const OccluderSet& set, const OccluderId
                    std::size_t end, PreparedBodies& out) {
     out.clear();
     const auto shapes = OccluderStorage::shapes(set);
-    const auto occluders = OccluderStorage::occluders(set);
+    const auto& occluders = OccluderStorage::occluders(set);
     for (std::size_t i = begin; i < end; ++i) {
         const auto id = chosen ? chosen[i] : static_cast<OccluderId>(i);
         const Occluder& occluder = occluders[id];

@@ -154,7 +154,7 @@ void Occluders::place_one(ShapeId shape, const FoundOccluder& occluder, const Tr
         if (*id < candidates_.size()) require_ok(candidates_.set(*id, {}));
         return;
     }
-    if (*id >= placed_.size()) placed_.resize(*id + std::size_t{1});
+    while (*id >= placed_.size()) placed_.push_back({});
     placed_[*id] = placed;
     placed_[*id].next = std::exchange(first, *id);
 }

@@ -2,6 +2,7 @@
 // The occluders of a World's meshes, placed for each object.
 #pragma once
 #include <crofton/core/memory.hpp>
+#include <crofton/core/paged_vector.hpp>
 #include <crofton/occlude/occlusion.hpp>
 #include <crofton/scene/scene.hpp>
 #include <span>
@@ -99,8 +100,8 @@ class Occluders {
     occlude::OccluderSet set_;
     occlude::OccluderCandidates candidates_;
     Vector<Mesh> meshes_;
-    Vector<Placed> placed_;   // by occluder
-    Vector<Holder> holders_;  // by object
+    PagedVector<Placed, 1024> placed_;  // by occluder
+    Vector<Holder> holders_;            // by object
     Vector<scene::MeshId> changed_meshes_;
     Vector<std::uint32_t> changed_objects_;
     Vector<RegionShapes> region_shapes_;

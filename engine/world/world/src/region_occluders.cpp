@@ -84,6 +84,7 @@ bool Occluders::update_regions(const Regions& regions) {
         if (std::any_of(region_holders_.begin(), region_holders_.end(), is_known)) continue;
         region_holders_.push_back(
             {handle, {attached.first, attached.generation}, attached.move.by, shapes_of(attached.region), {}});
+        region_holders_.back().first.reserve(attached.data().occluding.size());
         any_ = true;
     }
     // What has gone gets half of the time, so that it does not pile up while regions keep coming.

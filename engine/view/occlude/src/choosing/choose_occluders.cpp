@@ -10,6 +10,7 @@
 #include <numbers>
 #include <string>
 
+#include "choosing/candidate_storage.hpp"
 #include "choosing/choose_kernel.hpp"
 #include "choosing/large_worth.hpp"
 #include "exact_turn.hpp"
@@ -19,13 +20,11 @@ namespace {
 
 constexpr double kMostCoordinate = 1e15;
 constexpr std::uint64_t kSpare = 32;  // sorted beyond the budget
-constexpr std::size_t kPadding = 64;  // so that a vector that starts at a candidate stays within the columns
 
-ChooseView choose_view_of(const OccluderCandidates& candidates, const OcclusionView& given,
-                          const ChooseBudget& budget) {
+ChooseView choose_view_of(const glm::dvec3& origin, const OcclusionView& given, const ChooseBudget& budget) {
     ChooseView view;
     const auto row = [&](std::size_t r) { return glm::dvec3(given.rows[r][0], given.rows[r][1], given.rows[r][2]); };
-    const glm::dvec3 eye = given.origin - candidates.origin(), forward = -row(3);
+    const glm::dvec3 eye = given.origin - origin, forward = -row(3);
     const Frustum& frustum = given.frustum;
     view.plane_count = std::min<std::size_t>(frustum.plane_count, view.planes.size());
     for (std::size_t p = 0; p < view.plane_count; ++p) {
@@ -44,8 +43,8 @@ ChooseView choose_view_of(const OccluderCandidates& candidates, const OcclusionV
         const auto i = static_cast<std::size_t>(k);
         view.eye[i] = static_cast<float>(eye[k]);
         view.forward[i] = static_cast<float>(forward[k]);
-        view.low[i] = static_cast<float>(budget.objects.min[k] - candidates.origin()[k]);
-        view.high[i] = static_cast<float>(budget.objects.max[k] - candidates.origin()[k]);
+        view.low[i] = static_cast<float>(budget.objects.min[k] - origin[k]);
+        view.high[i] = static_cast<float>(budget.objects.max[k] - origin[k]);
     }
     return view;
 }
@@ -241,7 +240,14 @@ bool may_use(const EyeLimits& limits, const OcclusionView& view) {
     return true;
 }
 
-Result<void> OccluderCandidates::check(std::uint32_t id, const OccluderCandidate& candidate) const {
+OccluderCandidates::OccluderCandidates() : data_(Owner<Data>::make()) {}
+OccluderCandidates::~OccluderCandidates() = default;
+OccluderCandidates::OccluderCandidates(OccluderCandidates&&) noexcept = default;
+OccluderCandidates& OccluderCandidates::operator=(OccluderCandidates&&) noexcept = default;
+
+namespace {
+
+Result<void> check(std::uint64_t id, const OccluderCandidate& candidate) {
     bool finite =
         is_finite(candidate.center) && std::isfinite(candidate.radius) && is_finite(glm::dvec3(candidate.half_size));
     for (const glm::vec3& area : candidate.areas) finite = finite && is_finite(glm::dvec3(area));
@@ -252,55 +258,84 @@ Result<void> OccluderCandidates::check(std::uint32_t id, const OccluderCandidate
     return {};
 }
 
-void OccluderCandidates::write(std::uint32_t id, const OccluderCandidate& candidate) {
-    const glm::vec3 center(candidate.center - origin_);
-    for (int k = 0; k < 3; ++k) columns_[static_cast<std::size_t>(k)][id] = center[k];
-    columns_[3][id] = static_cast<float>(candidate.radius);
+void write(CandidatePage& page, std::size_t i, const glm::dvec3& origin, const OccluderCandidate& candidate) {
+    const glm::vec3 center(candidate.center - origin);
+    for (int k = 0; k < 3; ++k) page.columns[static_cast<std::size_t>(k)][i] = center[k];
+    page.columns[3][i] = static_cast<float>(candidate.radius);
     for (std::size_t a = 0; a < 3; ++a)
-        for (int k = 0; k < 3; ++k) columns_[4 + 3 * a + static_cast<std::size_t>(k)][id] = candidate.areas[a][k];
-    columns_[13][id] = candidate.front_only ? 1.0f : 0.0f;
-    edges_[id] = candidate.edges;
-    layers_[id] = candidate.layers;
-    limits_[id] = candidate.limits;
-    half_sizes_[id] = candidate.half_size == glm::vec3(0.0f) ? glm::vec3(static_cast<float>(candidate.radius))
-                                                             : glm::abs(candidate.half_size);
+        for (int k = 0; k < 3; ++k) page.columns[4 + 3 * a + static_cast<std::size_t>(k)][i] = candidate.areas[a][k];
+    page.columns[13][i] = candidate.front_only ? 1.0f : 0.0f;
+    page.edges[i] = candidate.edges;
+    page.layers[i] = candidate.layers;
+    page.limits[i] = candidate.limits;
+    page.half_sizes[i] = candidate.half_size == glm::vec3(0.0f) ? glm::vec3(static_cast<float>(candidate.radius))
+                                                                : glm::abs(candidate.half_size);
 }
 
+}  // namespace
+
 Result<std::uint32_t> OccluderCandidates::add(const OccluderCandidate& candidate) {
-    const auto id = static_cast<std::uint32_t>(size());
+    const std::size_t id = data_->count;
     if (auto status = check(id, candidate); !status) return tl::unexpected(status.error());
-    if (id == 0) origin_ = candidate.center;
-    for (Vector<float>& column : columns_) column.resize(id + 1 + kPadding, 0.0f);
-    edges_.push_back(0);
-    layers_.push_back(0);
-    limits_.emplace_back();
-    half_sizes_.emplace_back();
-    write(id, candidate);
-    return id;
+    if (id == 0) data_->origin = candidate.center;
+    reserve(id + 1);
+    write(*data_->pages[id / CandidatePage::kSize], id % CandidatePage::kSize, data_->origin, candidate);
+    ++data_->count;
+    return static_cast<std::uint32_t>(id);
 }
 
 Result<void> OccluderCandidates::set(std::uint32_t id, const OccluderCandidate& candidate) {
     if (id >= size()) return fail(ErrorCode::out_of_range, id, "occluder candidate: no such id");
     if (auto status = check(id, candidate); !status) return status;
-    write(id, candidate);
+    write(*data_->pages[id / CandidatePage::kSize], id % CandidatePage::kSize, data_->origin, candidate);
     return {};
 }
 
 void OccluderCandidates::reserve(std::size_t count) {
-    for (Vector<float>& column : columns_) column.reserve(count + kPadding);
-    edges_.reserve(count);
-    layers_.reserve(count);
-    limits_.reserve(count);
-    half_sizes_.reserve(count);
+    while (data_->pages.size() * CandidatePage::kSize < count) data_->pages.push_back(Owner<CandidatePage>::make());
 }
 
 void OccluderCandidates::clear() {
-    for (Vector<float>& column : columns_) column.clear();
-    edges_.clear();
-    layers_.clear();
-    limits_.clear();
-    half_sizes_.clear();
+    data_->count = 0;
 }
+
+std::size_t OccluderCandidates::size() const {
+    return data_->count;
+}
+
+std::uint32_t OccluderCandidates::layers(std::uint32_t id) const {
+    return data_->pages[id / CandidatePage::kSize]->layers[id % CandidatePage::kSize];
+}
+
+namespace {
+
+// Keys of all candidates in view that are worth something.
+void list_worth(const OccluderCandidates& candidates, const OcclusionView& view, const ChooseBudget& budget,
+                Vector<std::uint64_t>& keys) {
+    const glm::dvec3& origin = CandidateStorage::origin(candidates);
+    const ChooseView choose_view = choose_view_of(origin, view, budget);
+    const LargeWorth large(view, budget.objects, origin);
+    std::array<float, CandidatePage::kSize> values;
+    std::array<std::uint32_t, CandidatePage::kSize> seen;
+    keys.clear();
+    std::uint32_t first = 0;
+    for (const Owner<CandidatePage>& page : CandidateStorage::pages(candidates)) {
+        if (first >= candidates.size()) break;
+        std::array<const float*, CandidatePage::kColumns> columns;
+        for (std::size_t k = 0; k < columns.size(); ++k) columns[k] = page->columns[k].data();
+        const std::size_t count = std::min(candidates.size() - first, CandidatePage::kSize);
+        const std::size_t found = measure_cover(columns.data(), count, choose_view, seen.data(), values.data());
+        for (std::size_t i = 0; i < found; ++i) {
+            if (!(page->layers[seen[i]] & budget.layer_mask)) continue;
+            float worth = values[i];
+            if (worth < 0.0f) worth = large.of(*page, seen[i], -worth, choose_view.least);
+            if (worth > 0.0f) keys.push_back(key_of(worth, first + seen[i]));
+        }
+        first += CandidatePage::kSize;
+    }
+}
+
+}  // namespace
 
 Result<void> choose_occluders(const OccluderCandidates& candidates, const Camera& camera, const ChooseBudget& budget,
                               OccluderChoice& choice) {
@@ -314,22 +349,7 @@ Result<void> choose_occluders(const OccluderCandidates& candidates, const Camera
 void choose_occluders(const OccluderCandidates& candidates, const OcclusionView& view, const ChooseBudget& budget,
                       OccluderChoice& choice) {
     choice.ids.clear();
-    const ChooseView choose_view = choose_view_of(candidates, view, budget);
-    choice.values.resize(candidates.size() + kPadding);
-    choice.seen.resize(candidates.size() + kPadding);
-    std::array<const float*, OccluderCandidates::kColumns> columns{};
-    for (std::size_t k = 0; k < columns.size(); ++k) columns[k] = candidates.column(k);
-    const std::size_t seen =
-        measure_cover(columns.data(), candidates.size(), choose_view, choice.seen.data(), choice.values.data());
-    choice.order.clear();
-    const LargeWorth large(view, budget.objects, candidates.origin());
-    for (std::size_t i = 0; i < seen; ++i) {
-        const std::uint32_t id = choice.seen[i];
-        if (!(candidates.layers(id) & budget.layer_mask)) continue;
-        float worth = choice.values[i];
-        if (worth < 0.0f) worth = large.of(candidates, id, -worth, choose_view.least);
-        if (worth > 0.0f) choice.order.push_back(key_of(worth, id));
-    }
+    list_worth(candidates, view, budget, choice.order);
     // Sorted as far as needed: those that may not be used are few, and the next ones take their places.
     auto sorted = choice.order.begin();
     std::uint32_t edges = 0;
@@ -341,9 +361,11 @@ void choose_occluders(const OccluderCandidates& candidates, const OcclusionView&
         std::sort(first, sorted);
         for (auto key = first; key != sorted && choice.ids.size() < budget.max_occluders; ++key) {
             const auto id = static_cast<std::uint32_t>(*key);
-            if (candidates.edges(id) > budget.max_edges - edges) continue;
-            if (!may_use(candidates.limits(id), view)) continue;
-            edges += candidates.edges(id);
+            const CandidatePage& page = *CandidateStorage::pages(candidates)[id / CandidatePage::kSize];
+            const std::size_t i = id % CandidatePage::kSize;
+            if (page.edges[i] > budget.max_edges - edges) continue;
+            if (!may_use(page.limits[i], view)) continue;
+            edges += page.edges[i];
             choice.ids.push_back(id);
         }
     }

@@ -34,12 +34,12 @@ Stretch stretch_in(const Aabb& box, const glm::dvec3& start, const glm::dvec3& a
 }
 
 // Σ |dot(along, areas)|: the visible areas of the occluder and of its bounds.
-double faced_of(const OccluderCandidates& candidates, std::uint32_t id, const glm::dvec3& along) {
+double faced_of(const CandidatePage& page, std::size_t i, const glm::dvec3& along) {
     double faced = 0.0;
     for (std::size_t a = 0; a < 3; ++a) {
         double dot = 0.0;
         for (std::size_t k = 0; k < 3; ++k)
-            dot += along[static_cast<int>(k)] * static_cast<double>(candidates.column(4 + 3 * a + k)[id]);
+            dot += along[static_cast<int>(k)] * static_cast<double>(page.columns[4 + 3 * a + k][i]);
         faced += std::fabs(dot);
     }
     return faced;
@@ -50,11 +50,10 @@ double faced_of(const glm::dvec3& half, const glm::dvec3& along) {
 }
 
 // The normal of the largest of the areas: across it the occluder is thinnest.
-glm::dvec3 thin_axis(const OccluderCandidates& candidates, std::uint32_t id) {
+glm::dvec3 thin_axis(const CandidatePage& page, std::size_t i) {
     glm::dvec3 largest(0.0);
     for (std::size_t a = 0; a < 3; ++a) {
-        const glm::dvec3 area(candidates.column(4 + 3 * a)[id], candidates.column(5 + 3 * a)[id],
-                              candidates.column(6 + 3 * a)[id]);
+        const glm::dvec3 area(page.columns[4 + 3 * a][i], page.columns[5 + 3 * a][i], page.columns[6 + 3 * a][i]);
         if (glm::dot(area, area) > glm::dot(largest, largest)) largest = area;
     }
     return largest;
@@ -113,17 +112,16 @@ LargeWorth::Ray LargeWorth::ray_through(const glm::dvec2& pixel) const {
             -row_direction(view_.rows[3])};
 }
 
-float LargeWorth::of(const OccluderCandidates& candidates, std::uint32_t id, float cover, float least) const {
-    const glm::dvec3 center =
-        origin_ + glm::dvec3(candidates.column(0)[id], candidates.column(1)[id], candidates.column(2)[id]);
-    const glm::dvec3 half(candidates.half_size(id));
+float LargeWorth::of(const CandidatePage& page, std::size_t i, float cover, float least) const {
+    const glm::dvec3 center = origin_ + glm::dvec3(page.columns[0][i], page.columns[1][i], page.columns[2][i]);
+    const glm::dvec3 half(page.half_sizes[i]);
     const Aabb bounds{center - half, center + half};
     Rectangle common = rectangle_of(bounds);
     common.min = glm::max(common.min, window_.min);
     common.max = glm::min(common.max, window_.max);
     if (common.is_empty()) return 0.0f;
     const glm::dvec2 step = (common.max - common.min) / static_cast<double>(kRaysASide);
-    const glm::dvec3 thin = thin_axis(candidates, id);
+    const glm::dvec3 thin = thin_axis(page, i);
     double covered = 0.0, worth = 0.0;
     for (int y = 0; y < kRaysASide; ++y)
         for (int x = 0; x < kRaysASide; ++x) {
@@ -132,7 +130,7 @@ float LargeWorth::of(const OccluderCandidates& candidates, std::uint32_t id, flo
             const double nearest = view_.perspective ? std::max(own.begin, 0.0) : own.begin;
             if (!(nearest <= own.end)) continue;
             const double length = glm::length(ray.along);
-            const double seen = faced_of(candidates, id, ray.along), around = faced_of(half, ray.along);
+            const double seen = faced_of(page, i, ray.along), around = faced_of(half, ray.along);
             double share = share_ * std::min(1.0, around > 0.0 ? seen / around : 0.0);
             if (view_.perspective) share /= length * length * length;
             covered += share;

@@ -6,6 +6,8 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 
+#include "choosing/candidate_storage.hpp"
+
 namespace crofton::occlude {
 
 class LargeWorth {
@@ -16,7 +18,7 @@ class LargeWorth {
     // As the kernel's worth: the share of all directions that the candidate covers, times the way behind it through the
     // objects' bounds; here a sum over rays through the part of the picture where the two meet. 0: nothing is behind
     // it, or it covers less than `least` there and `cover` is less.
-    [[nodiscard]] float of(const OccluderCandidates& candidates, std::uint32_t id, float cover, float least) const;
+    [[nodiscard]] float of(const CandidatePage& page, std::size_t i, float cover, float least) const;
 
   private:
     struct Ray {

@@ -94,35 +94,27 @@ struct OccluderCandidate {
 // with the patch's mean shadows along the axes.
 [[nodiscard]] OccluderCandidate candidate_of(const FoundOccluder& found, const Transform& transform);
 
-// Candidates by id, stored for vector kernels. Ids are 0, 1, 2, … in the order of add().
+// Candidates by id, stored for vector kernels. Ids are 0, 1, 2, … in the order of add(), which takes as long however many
+// there are.
 class OccluderCandidates {
   public:
+    OccluderCandidates();
+    ~OccluderCandidates();
+    OccluderCandidates(OccluderCandidates&&) noexcept;
+    OccluderCandidates& operator=(OccluderCandidates&&) noexcept;
+
     // Errors leave everything unchanged: non_finite, out_of_range (coordinates beyond 1e15), with `item` the id.
     [[nodiscard]] Result<std::uint32_t> add(const OccluderCandidate& candidate);
     [[nodiscard]] Result<void> set(std::uint32_t id, const OccluderCandidate& candidate);
     void reserve(std::size_t count);
     void clear();
-    [[nodiscard]] std::size_t size() const { return edges_.size(); }
-
-    // Coordinates relative to origin(), rounded to float, by component: center, radius, nine of the areas, then 0 or
-    // the largest float for front_only.
-    static constexpr std::size_t kColumns = 14;
-    [[nodiscard]] const glm::dvec3& origin() const { return origin_; }
-    [[nodiscard]] const float* column(std::size_t k) const { return columns_[k].data(); }
-    [[nodiscard]] std::uint32_t edges(std::uint32_t id) const { return edges_[id]; }
-    [[nodiscard]] std::uint32_t layers(std::uint32_t id) const { return layers_[id]; }
-    [[nodiscard]] const EyeLimits& limits(std::uint32_t id) const { return limits_[id]; }
-    [[nodiscard]] const glm::vec3& half_size(std::uint32_t id) const { return half_sizes_[id]; }
+    [[nodiscard]] std::size_t size() const;
+    [[nodiscard]] std::uint32_t layers(std::uint32_t id) const;
 
   private:
-    [[nodiscard]] Result<void> check(std::uint32_t id, const OccluderCandidate& candidate) const;
-    void write(std::uint32_t id, const OccluderCandidate& candidate);
-
-    glm::dvec3 origin_{0.0};  // the first candidate's center
-    std::array<Vector<float>, kColumns> columns_;
-    Vector<std::uint32_t> edges_, layers_;
-    Vector<EyeLimits> limits_;
-    Vector<glm::vec3> half_sizes_;
+    friend struct CandidateStorage;
+    struct Data;
+    Owner<Data> data_;
 };
 
 struct ChooseBudget {
@@ -147,9 +139,7 @@ struct ChooseBudget {
 struct OccluderChoice {
     Vector<std::uint32_t> ids;  // those worth most first; of equal worth, the lower id first
 
-    Vector<float> values;  // scratch from here on
-    Vector<std::uint32_t> seen;
-    Vector<std::uint64_t> order;
+    Vector<std::uint64_t> order;  // scratch
 };
 
 // Chooses the candidates that are worth most to the view, each considered alone.
