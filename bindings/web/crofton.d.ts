@@ -68,6 +68,8 @@ export interface ViewResult extends Owned {
     readonly occluded: Uint32Array;
     /** For a view with a picture: what to draw; bit k of `triangles` stands for triangle k of the cluster. */
     readonly triangles: { object: number; cluster: number; triangles: bigint }[];
+    /** The same without BigInt or copies, four words each: object, cluster, low and high half of the bits. */
+    readonly triangleWords: Uint32Array;
     readonly statistics: Record<'nodesTested' | 'boxesTested' | 'acceptedWhole' | 'straddling' | 'exactTests' | 'falsePositives' |
         'occludersDrawn', number>;
 }

@@ -16,6 +16,7 @@ import re
 import shutil
 import subprocess
 import sys
+import zlib
 from html.parser import HTMLParser
 from pathlib import Path
 from urllib.parse import unquote
@@ -44,8 +45,9 @@ def write_page(out):
     scripts = (f'<script type="importmap">{json.dumps({"imports": urls})}</script>\n'
                '<script type="module">import "crofton/main.js";</script>')
     (out / "index.html").write_text((WEB / "page/index.html").read_text().replace("<!-- modules -->", scripts))
-    data = base64.b64encode((WEB / "wasm/simd.wasm").read_bytes()).decode()
-    (out / "simd.wasm.js").write_text(f'globalThis.croftonBytes = "{data}";\n')
+    packed = {"simd.wasm": zlib.compress((WEB / "wasm/simd.wasm").read_bytes(), 9), "town": (WEB / "page/town.bin").read_bytes()}
+    for name, data in packed.items():
+        (out / f"{name}.js").write_text(f'(globalThis.croftonBytes ??= {{}})["{name}"] = "{base64.b64encode(data).decode()}";\n')
 
 
 def run_doxygen(settings, log):

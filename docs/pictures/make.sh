@@ -12,7 +12,7 @@ trap 'rm -rf "$work"' EXIT
 "$crofton" view --no-window --size 960x540 --script clusters.json --after 8 --screenshot clusters.png
 "$crofton" frames town --camera orbit --frames 12 --size 960x540 --png "$work/town"
 cp "$work"/town/*0003.png town.png
-"$crofton" radiosity room --edge 0.1 --error 0.02 --out "$work/room.glb"
+"$crofton" study radiosity room --edge 0.1 --error 0.02 --out "$work/room.glb"
 "$crofton" view "$work/room.glb" --no-window --size 800x450 --script room.json --after 3 --screenshot room.png
 "$crofton" frames town --camera street --frames 120 --size 960x540 --png "$work/street"
 cp "$work"/street/*0035.png street.png

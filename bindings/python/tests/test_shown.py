@@ -27,7 +27,7 @@ def examples(cube):
         world.raycast((0, 0, 5), (0, 0, -1)), world.closest(10, sphere=((5, 0, 0), 1)),
         world.cast(crofton.Shape.sphere(1), (0, 0, -9), [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 5]]),
         crofton.OcclusionOptions(), crofton.ViewMatrix(np.eye(4)), crofton.PictureView(), crofton.DrawLimits((0, 0, 0)),
-        crofton.ViewRequest(camera, order="tree"), world.view(camera), world.view([camera]), mesh, mesh.show(),
+        crofton.ViewRequest(camera, order="tree"), crofton.ShadowReceivers(world.view(camera)), world.view(camera), world.view([camera]), mesh, mesh.show(),
         mesh.raycast((0, 0, 5), (0, 0, -1)), mesh.distance(mesh), crofton.Shape.sphere(1), crofton.Shape.sphere(1).mass,
         crofton.Shape.sphere(1).cast((9, 0, 0), crofton.Shape.sphere(1), [[1, 0, 0, 5], [0, 1, 0, 0], [0, 0, 1, 0]]),
         crofton.Pvs.bake(*cube, cells=(1, 1, 1), seconds=0.01), crofton.Chart([1, 2], {"a": [1, 2]}), crofton.Error("text"),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What native Crofton says of the page's town. For each camera: how many objects are outside, straddling, inside and
-// occluded, and a digest of all verdicts. Reads doubles, written by bindings/web/test/page.test.js.
-#include <crofton/capi/scene.h>
+// What native Crofton says of the page's town. For each camera: the objects in its frustum, the triangles that its
+// picture needs, and a digest of their list. Reads doubles, written by bindings/web/test/page.test.js.
+#include <crofton/capi/crofton.h>
 
 #include <cstdint>
 #include <cstdio>
@@ -37,15 +37,9 @@ crofton_world_mesh read_mesh(Reader& in, crofton_world* world) {
     crofton_mesh_data data = crofton_default_mesh_data();
     data.positions = positions.data(), data.position_count = positions.size() / 3;
     data.indices = indices.data(), data.index_count = indices.size();
+    data.clusters = data.one_sided = 1;
     crofton_world_mesh mesh{};
     require_ok(crofton_world_add_mesh(world, &data, &mesh));
-    if (in.next() != 0.0) {
-        crofton_occluder occluder{};
-        occluder.size = sizeof occluder;
-        occluder.kind = 2;
-        occluder.positions = positions.data(), occluder.position_count = positions.size() / 3;
-        require_ok(crofton_world_set_occluders(world, mesh, &occluder, 1));
-    }
     return mesh;
 }
 
@@ -59,14 +53,6 @@ void add_object(Reader& in, crofton_world* world, const std::vector<crofton_worl
     description.transform = &transform, description.has_mesh = 1, description.mesh = meshes.at(mesh);
     crofton_object object{};
     require_ok(crofton_world_add(world, &description, &object));
-}
-
-crofton_box read_box(Reader& in) {
-    crofton_box box{};
-    for (double& c : box.center) c = in.next();
-    float* numbers = reinterpret_cast<float*>(&box.center + 1);
-    for (int i = 0; i < 12; ++i) numbers[i] = static_cast<float>(in.next());
-    return box;
 }
 
 crofton_camera read_camera(Reader& in) {
@@ -92,38 +78,30 @@ int main(int, char** arguments) {
     const std::size_t objects = in.count();
     for (std::size_t i = 0; i < objects; ++i) add_object(in, world, meshes);
     require_ok(crofton_world_update(world, nullptr));
-    std::vector<crofton_box> boxes;
-    for (std::size_t i = 0; i < objects; ++i) boxes.push_back(read_box(in));
-    crofton_tree* tree = nullptr;
-    require_ok(crofton_tree_create(boxes.data(), nullptr, objects, nullptr, &tree));
     crofton_view_result* seen = nullptr;
     require_ok(crofton_view_result_create(&seen));
     for (std::size_t cameras = in.count(); cameras > 0; --cameras) {
-        const bool occlusion = in.next() != 0.0;
         const crofton_camera camera = read_camera(in);
+        crofton_picture_view picture = crofton_default_picture_view();
+        picture.width = static_cast<std::uint32_t>(in.count()), picture.height = static_cast<std::uint32_t>(in.count());
+        picture.depth = CROFTON_DEPTH_MINUS_ONE_TO_ONE;
         crofton_view_request request = crofton_default_view_request();
         request.camera = &camera;
-        require_ok(crofton_tree_view(tree, &request, nullptr, seen));
-        const std::uint32_t* ids = nullptr;
-        const std::uint8_t* found = nullptr;
-        std::size_t count = 0;
-        require_ok(crofton_view_result_ids(seen, &ids, &count, &found, nullptr));
-        std::vector<std::uint8_t> verdicts(objects);
-        for (std::size_t i = 0; i < count; ++i) verdicts[ids[i]] = found[i];
-        crofton_occlusion_options options = crofton_default_occlusion_options();
-        options.list_occluded = 1;
-        if (occlusion) request.occlusion = &options;
         require_ok(crofton_world_view(world, &request, 1, nullptr, seen));
-        if (occlusion) {
-            crofton_view_info info{};
-            info.size = sizeof info;
-            require_ok(crofton_view_result_get_view(seen, 0, &info));
-            for (std::size_t i = 0; i < info.occluded_count; ++i)
-                if (verdicts[info.occluded_ids[i]] != 0) verdicts[info.occluded_ids[i]] = 3;
-        }
-        std::size_t counts[4] = {};
+        const std::uint32_t* ids = nullptr;
+        std::size_t count = 0;
+        require_ok(crofton_view_result_ids(seen, &ids, &count, nullptr, nullptr));
+        request.picture = &picture;
+        require_ok(crofton_world_view(world, &request, 1, nullptr, seen));
+        crofton_view_info info{};
+        info.size = sizeof info;
+        require_ok(crofton_view_result_get_view(seen, 0, &info));
         std::uint32_t digest = 2166136261u;
-        for (const std::uint8_t verdict : verdicts) ++counts[verdict], digest = (digest ^ verdict) * 16777619u;
-        std::printf("%zu %zu %zu %zu %u\n", counts[0], counts[1], counts[2], counts[3], digest);
+        const auto mix = [&](std::uint64_t word) { digest = (digest ^ static_cast<std::uint32_t>(word)) * 16777619u; };
+        for (std::size_t i = 0; i < info.triangle_cluster_count; ++i) {
+            const crofton_visible_cluster& one = info.triangles[i];
+            mix(one.object), mix(one.cluster), mix(one.triangles), mix(one.triangles >> 32);
+        }
+        std::printf("%zu %llu %u\n", count, static_cast<unsigned long long>(info.triangles_listed), digest);
     }
 }

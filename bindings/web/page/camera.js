@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Cameras of the page: { position, yaw, pitch }, radians; yaw 0 looks along -z. Matrices by columns, for WebGL.
-export const LENS = { fovY: 1, near: 0.3, far: 1500 };
+export const LENS = { fovY: 1, near: 1, far: 1500 };
 
 export function cameraOf({ position, yaw, pitch }, aspect) {
     const forward = [Math.sin(yaw) * Math.cos(pitch), Math.sin(pitch), -Math.cos(yaw) * Math.cos(pitch)];
@@ -40,8 +40,8 @@ export function edgesOf(camera, reach = 400) {
 /** Beside and above a camera, with its frustum in the middle of the picture. */
 export function besideOf({ position, yaw }) {
     const ahead = [Math.sin(yaw), 0, -Math.cos(yaw)], right = [Math.cos(yaw), 0, Math.sin(yaw)];
-    const place = position.map((p, k) => p - 90 * ahead[k] + 110 * right[k] + (k === 1 ? 130 : 0));
-    const way = position.map((p, k) => p + 130 * ahead[k] - place[k]);
+    const place = position.map((p, k) => p - 40 * ahead[k] + 85 * right[k] + (k === 1 ? 75 : 0));
+    const way = position.map((p, k) => p + 75 * ahead[k] - place[k]);
     return { position: place, yaw: Math.atan2(way[0], -way[2]), pitch: Math.atan2(way[1], Math.hypot(way[0], way[2])) };
 }
 
@@ -52,11 +52,23 @@ export function between(a, b, part) {
         yaw: a.yaw + smooth * (turn - 2 * Math.PI * Math.round(turn / (2 * Math.PI))) };
 }
 
-/** Where the flight around a square of streets is after `seconds`; it turns on the last metres before each corner. */
-export function tour(seconds) {
-    const half = 200, along = 18 * seconds, leg = Math.floor(along / (2 * half)), u = along - 2 * half * leg;
-    const corners = [[half, half], [half, -half], [-half, -half], [-half, half]], ways = [[0, -1], [-1, 0], [0, 1], [1, 0]];
-    const [x, z] = corners[leg % 4], [dx, dz] = ways[leg % 4], bend = Math.max(0, (u - 2 * half + 40) / 40);
-    return { position: [x + dx * u, 9 + 4 * Math.sin(seconds / 5), z + dz * u],
-        yaw: -Math.PI / 2 * (leg + bend * bend * (3 - 2 * bend)), pitch: -0.02 };
+/** Where the flight along a closed path is after `seconds`; it rounds the path's corners. */
+export function tour(path, seconds) {
+    const round = 14, legs = path.map((from, i) => {
+        const to = path[(i + 1) % path.length], length = Math.hypot(to[0] - from[0], to[2] - from[2]);
+        return { from, length, way: [(to[0] - from[0]) / length, (to[2] - from[2]) / length] };
+    });
+    let along = 9 * seconds % legs.reduce((sum, { length }) => sum + length, 0), i = 0;
+    while (along > legs[i].length) along -= legs[i++].length;
+    const { from, length, way } = legs[i], next = legs[(i + 1) % legs.length], last = legs[(i + legs.length - 1) % legs.length];
+    const onLeg = (leg, far) => [leg.from[0] + far * leg.way[0], leg.from[2] + far * leg.way[1]];
+    let place = onLeg(legs[i], along), ahead = way;
+    const bend = (before, after, corner, part) => {
+        const begin = onLeg(before, before.length - round), end = onLeg(after, round), rest = 1 - part;
+        place = [0, 1].map((k) => rest * rest * begin[k] + 2 * part * rest * corner[2 * k] + part * part * end[k]);
+        ahead = [0, 1].map((k) => rest * before.way[k] + part * after.way[k]);
+    };
+    if (along > length - round) bend(legs[i], next, next.from, (along - length + round) / (2 * round));
+    else if (along < round) bend(last, legs[i], from, (along + round) / (2 * round));
+    return { position: [place[0], 6.5 + 1.5 * Math.sin(seconds / 4), place[1]], yaw: Math.atan2(ahead[0], -ahead[1]), pitch: -0.06 };
 }

@@ -1,82 +1,51 @@
 // SPDX-License-Identifier: MIT
-// What a camera sees of the town: one verdict an object. A tree of fitted boxes says which are in the frustum, a world of
-// meshes which of those are hidden.
-import { MESHES, placed, transformOf } from './town.js';
+// What a camera's picture needs of the town: triangles, by a World whose meshes are cut into clusters.
 
-export const VERDICTS = ['outside', 'straddling', 'inside', 'occluded'];
-export const CRITERIA = {
-    axes: { says: 'along the mesh’s axes' },
-    volume: { says: 'least volume', weights: { volume: 1 } },
-    area: { says: 'least area', weights: { area: 1 } },
-    perimeter: { says: 'least mean width', weights: { meanCurvature: 1 } },
-};
-
-function boundOf({ positions }) {
-    const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
-    positions.forEach((value, i) => {
-        low[i % 3] = Math.min(low[i % 3], value);
-        high[i % 3] = Math.max(high[i % 3], value);
-    });
-    return { center: low.map((l, k) => (l + high[k]) / 2), halfExtents: low.map((l, k) => (high[k] - l) / 2),
-        axes: [1, 0, 0, 0, 1, 0, 0, 0, 1] };
-}
+/** Of objects and of triangles: what the frustum does not reach, what is drawn, what others hide. */
+export const VERDICTS = ['outside', 'drawn', 'hidden'];
 
 export class Culling {
-    #crofton; #objects; #world; #tree; #visible; #seen; #frustum; #boxes;
+    #world; #seen; #inFrustum; #clusters; #objects;
 
-    constructor(crofton, objects) {
-        this.#crofton = crofton;
-        this.#objects = objects;
-        this.#visible = new crofton.ViewResult();
-        this.#seen = new crofton.ViewResult();
-        this.#frustum = new crofton.Frustum();
+    constructor(crofton, { meshes, objects }) {
         this.#world = new crofton.World();
-        const meshes = MESHES.map(({ positions, indices, occludes }) => {
-            const mesh = this.#world.addMesh(positions, indices);
-            if (occludes) this.#world.setConvexOccluder(mesh, positions);
-            return mesh;
-        });
-        objects.forEach((object, i) => {
-            const { index } = this.#world.add({ mesh: meshes[object.mesh], transform: transformOf(object) });
+        this.#seen = new crofton.ViewResult();
+        this.#inFrustum = new crofton.ViewResult();
+        this.#objects = objects;
+        const handles = meshes.map(({ positions, indices }) => this.#world.addMesh(positions, indices, { clusters: true, oneSided: true }));
+        objects.forEach(({ mesh, matrix }, i) => {
+            const { index } = this.#world.add({ mesh: handles[mesh], transform: matrix });
             if (index !== i) throw new Error('objects of a new world are not numbered in turn');
         });
         this.#world.update();
+        /** By mesh: `{ clusters, triangleOrder }`. */
+        this.#clusters = handles.map((mesh) => this.#world.clustersOf(mesh));
         this.verdicts = new Uint8Array(objects.length);
-        this.setCriterion('axes');
     }
+    clustersOf(object) { return this.#clusters[this.#objects[object].mesh]; }
 
-    /** Fits the boxes anew; one of CRITERIA. */
-    setCriterion(name) {
-        const { weights } = CRITERIA[name];
-        const fitted = MESHES.map((mesh) =>
-            weights ? this.#crofton.fitBox(mesh.positions, { quality: 'exact', criterion: weights }) : boundOf(mesh));
-        this.#boxes?.free();
-        this.#tree?.free();
-        this.#boxes = new this.#crofton.Boxes(this.#objects.length);
-        this.#objects.forEach((object, i) => {
-            const box = placed(fitted[object.mesh], object);
-            this.#boxes.set(i, box.center, box.halfExtents, box.axes);
-        });
-        this.#tree = new this.#crofton.Tree(this.#boxes);
-        this.criterion = name;
-    }
-
-    /** Bytes of the boxes, 72 each, as the library holds them. */
-    get boxBytes() { return this.#boxes.bytes.slice(); }
-
-    /** Fills `verdicts`; gives how many there are of each, and the milliseconds of culling. */
-    run(camera, occlusion) {
-        const start = performance.now(), { verdicts } = this;
+    /**
+     * Fills `verdicts`, an object each, and `words`: object, cluster and the two halves of the mask of its triangles, for each
+     * cluster to draw. `picture`: its size; edges are not smoothed. Without `occlusion` all that the frustum reaches is
+     * drawn. Returns the milliseconds that the view to draw took.
+     */
+    run(camera, picture, occlusion) {
+        const { verdicts } = this, start = performance.now();
+        if (occlusion) this.#world.view({ camera, picture: { ...picture, depth: 'minusOneToOne' } }, this.#seen);
+        else this.#world.view({ camera }, this.#inFrustum);
+        const ms = performance.now() - start;
+        if (occlusion) this.#world.view({ camera }, this.#inFrustum);
         verdicts.fill(0);
-        this.#tree.cull(this.#frustum.setCamera(camera), this.#visible);
-        const { ids, verdicts: found } = this.#visible;
-        for (let i = 0; i < ids.length; ++i) verdicts[ids[i]] = found[i];
-        if (occlusion) {
-            this.#world.view({ camera, occlusion: { listOccluded: true } }, this.#seen);
-            for (const id of this.#seen.occluded) if (verdicts[id]) verdicts[id] = 3;
-        }
-        const counts = [0, 0, 0, 0];
-        for (const verdict of verdicts) ++counts[verdict];
-        return { counts, ms: performance.now() - start };
+        for (const id of this.#inFrustum.ids) verdicts[id] = occlusion ? 2 : 1;
+        this.words = occlusion ? this.#seen.triangleWords : this.#wholeObjects();
+        for (let i = 0; i < this.words.length; i += 4) verdicts[this.words[i]] = 1;
+        return ms;
+    }
+    #wholeObjects() {
+        const words = [];
+        for (const object of this.#inFrustum.ids)
+            this.clustersOf(object).clusters.forEach(({ triangleCount: count }, cluster) =>
+                words.push(object, cluster, count < 32 ? 2 ** count - 1 : 0xffffffff, count < 64 ? count < 32 ? 0 : 2 ** (count - 32) - 1 : 0xffffffff));
+        return Uint32Array.from(words);
     }
 }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The page: a flight through the town, its switches, and what the address says:
 //   #at=x,y,z,yaw,pitch  stand there      #frozen=x,y,z,yaw,pitch  the camera that culls stands there
-//   #criterion=volume    #occlusion=0
-//   #all  draw what is culled too        #plainly  edges are not smoothed
+//   #occlusion=0         draw what is hidden too
+//   #all                 draw the whole town
 import { load } from 'crofton';
-import { makeTown } from './town.js';
-import { CRITERIA, Culling, VERDICTS } from './culling.js';
+import { readTown } from './town.js';
+import { Culling, VERDICTS } from './culling.js';
 import { besideOf, between, cameraOf, edgesOf, matrixOf, tour } from './camera.js';
 import { COLOURS, Drawing } from './draw.js';
 import { TownMap } from './map.js';
@@ -21,29 +21,26 @@ const poseOf = (text) => {
 // The flight stops once for a demonstration, seconds: the frustum freezes, the viewer turns aside, looks and comes back.
 const DEMONSTRATION = { begins: 6, aside: 3, looks: 9, back: 2.5 };
 const STORY = {
-    flying: 'Only what may be seen is drawn: green objects lie within the view, amber ones cross its edge.',
-    frozen: 'The view is frozen and seen from outside. Green and amber are drawn, red is hidden behind them and left out, grey lies outside.',
+    flying: 'Only the triangles that show in this picture are drawn. None that shows is missing.',
+    frozen: 'Seen from outside: green was drawn, red is hidden behind it and left out, grey is outside the view.',
 };
+const OWN = [0, 0, 0, 0], TINTS = COLOURS.map((rgb, verdict) => [...rgb, verdict === 0 ? 0.85 : 0.75]);
 
 class Page {
-    constructor(gl, culling, objects) {
-        Object.assign(this, { gl, culling, objects, drawing: new Drawing(gl, objects), map: new TownMap(element('map'), objects),
-            keys: new Set(), seconds: 0 });
+    constructor(gl, culling, town) {
+        Object.assign(this, { gl, culling, town, drawing: new Drawing(gl, town, culling), map: new TownMap(element('map'), town),
+            keys: new Set(), seconds: 0, isExact: gl.getParameter(gl.SUBPIXEL_BITS) >= 8 });
         this.pose = poseOf(address.get('at'));
         this.flying = !this.pose;
-        this.pose ??= tour(0);
+        this.pose ??= tour(town.flight, 0);
         this.frozen = poseOf(address.get('frozen'));
         this.demonstrates = this.flying && !this.frozen;
         this.occlusion = address.get('occlusion') !== '0';
         this.all = address.has('all');
-        if (address.get('criterion') in CRITERIA) culling.setCriterion(address.get('criterion'));
     }
 
     connect() {
         const { canvas } = this.gl;
-        for (const [name, { says }] of Object.entries(CRITERIA)) element('criterion').append(new Option(says, name));
-        element('criterion').value = this.culling.criterion;
-        element('criterion').onchange = (event) => this.culling.setCriterion(event.target.value);
         element('occlusion').checked = this.occlusion;
         element('occlusion').onchange = (event) => { this.occlusion = event.target.checked; };
         element('freeze').checked = Boolean(this.frozen);
@@ -65,12 +62,12 @@ class Page {
             if (!last) return;
             const [x, y] = [event.clientX - last.x, event.clientY - last.y];
             Object.assign(last, { x: event.clientX, y: event.clientY });
-            if (fingers.size === 2) this.step((apart() - before) / 4);
+            if (fingers.size === 2) this.step((apart() - before) / 8);
             else this.turn(x / 300, -y / 300);
         };
-        canvas.onwheel = (event) => this.step(-event.deltaY / 20);
+        canvas.onwheel = (event) => this.step(-event.deltaY / 40);
         onkeydown = (event) => {
-            if (event.target.tagName === 'SELECT' || event.ctrlKey || event.metaKey) return;
+            if (event.ctrlKey || event.metaKey) return;
             if (event.key === 'f') this.userFreezes(!this.frozen);
             else this.keys.add(event.key.toLowerCase());
         };
@@ -114,12 +111,12 @@ class Page {
         if (!ahead && !aside && !rise) return;
         const { yaw, pitch } = this.pose;
         this.go([ahead * Math.sin(yaw) * Math.cos(pitch) + aside * Math.cos(yaw), ahead * Math.sin(pitch) + rise,
-            -ahead * Math.cos(yaw) * Math.cos(pitch) + aside * Math.sin(yaw)], seconds * (held('shift') ? 150 : 40));
+            -ahead * Math.cos(yaw) * Math.cos(pitch) + aside * Math.sin(yaw)], seconds * (held('shift') ? 60 : 12));
     }
     fly(seconds) {
         const { begins, aside, looks, back } = DEMONSTRATION;
         if (!this.demonstrates || (this.shown === undefined && this.seconds < begins)) {
-            this.pose = tour(this.seconds += seconds);
+            this.pose = tour(this.town.flight, this.seconds += seconds);
             return;
         }
         if (this.shown === undefined) {
@@ -140,21 +137,44 @@ class Page {
         if (this.flying) this.fly(seconds);
         else this.walk(seconds);
         const viewer = cameraOf(this.pose, width / height), camera = this.frozen ? cameraOf(this.frozen, width / height) : viewer;
-        const { counts, ms } = this.culling.run(camera, this.occlusion);
-        const shown = this.frozen || this.all ? () => true : (verdict) => verdict === 1 || verdict === 2;
-        const drawn = this.drawing.frame(this.objects, this.culling.verdicts, shown, matrixOf(viewer), viewer.position,
-            this.frozen && edgesOf(camera));
+        const key = JSON.stringify([camera, width, height, this.occlusion, Boolean(this.frozen), this.all]), changed = key !== this.key;
+        if (changed) this.cull(camera, { width, height });
+        this.key = key;
+        this.drawing.frame(this.parts, changed, matrixOf(viewer), viewer.position, this.frozen && edgesOf(camera, 160));
         this.map.draw(this.culling.verdicts, camera, viewer.position);
-        this.show(counts, ms, drawn);
-        this.answer = { counts, drawn, camera };
+        if (changed) this.show();
+        this.answer = { objects: this.objects, triangles: this.triangles, camera };
     }
-    show(counts, ms, drawn) {
-        VERDICTS.forEach((name, verdict) => { element(name).textContent = counts[verdict].toLocaleString('en'); });
-        element('story').textContent = this.frozen ? STORY.frozen : STORY.flying;
+    /** Says what is drawn, and counts the objects and triangles of each verdict. */
+    cull(camera, picture) {
+        const { culling, drawing, frozen } = this, ms = culling.run(camera, picture, this.occlusion), { words } = culling;
         this.mean = this.mean === undefined ? ms : 0.9 * this.mean + 0.1 * ms;
-        const needed = counts[1] + counts[2], say = (count) => count.toLocaleString('en');
-        element('time').textContent = `${say(this.objects.length)} objects, ${drawn > needed
-            ? `all shown here; a frame needs ${say(needed)},` : `${say(drawn)} drawn,`} culled in ${this.mean.toFixed(2)} ms`;
+        const drawn = drawing.listed(words, culling);
+        this.parts = [{ from: 0, to: drawn, tint: frozen ? TINTS[1] : OWN }];
+        if (this.all) {  // in the order in which a renderer without culling draws
+            drawing.scratch.set(drawing.all);
+            this.parts = [{ from: 0, to: drawing.all.length, tint: OWN }];
+        } else if (frozen) {
+            const hidden = drawing.unlisted(words, culling, 2, drawn), outside = drawing.unlisted(words, culling, 0, hidden);
+            this.parts.push({ from: drawn, to: hidden, tint: TINTS[2] }, { from: hidden, to: outside, tint: TINTS[0] });
+        }
+        this.objects = [0, 0, 0];
+        const corners = [0, drawn, -drawn];
+        culling.verdicts.forEach((verdict, i) => {
+            ++this.objects[verdict];
+            corners[verdict === 0 ? 0 : 2] += drawing.first[i + 1] - drawing.first[i];
+        });
+        this.triangles = corners.map((count) => count / 3);
+    }
+    show() {
+        const say = (count) => count.toLocaleString('en');
+        VERDICTS.forEach((name, verdict) => {
+            element(`${name}-objects`).textContent = say(this.objects[verdict]);
+            element(`${name}-triangles`).textContent = say(this.triangles[verdict]);
+        });
+        element('story').textContent = this.frozen ? STORY.frozen : STORY.flying;
+        element('time').textContent = `${(100 * this.triangles[1] / this.drawing.triangles).toFixed(1)} % of the town is drawn${
+            this.occlusion && this.isExact ? ', and the picture is the same to the pixel' : ''}. Found in ${this.mean.toFixed(1)} ms.`;
     }
 }
 
@@ -164,32 +184,30 @@ function say(text) {
     document.documentElement.dataset.state = 'refused';
 }
 
-/** A script that gives the bytes of the compiled library: a file may not fetch others, but may run them. */
-function bytesFromScript() {
-    return new Promise((done, failed) => {
+/** A script that gives bytes, compressed: a file may not fetch others, but may run them. */
+async function bytesFromScript(name) {
+    await new Promise((done, failed) => {
         const script = document.createElement('script');
-        script.src = 'simd.wasm.js';
-        script.onload = () => {
-            const text = atob(globalThis.croftonBytes), bytes = new Uint8Array(text.length);
-            for (let i = 0; i < bytes.length; ++i) bytes[i] = text.charCodeAt(i);
-            done(bytes);
-        };
-        script.onerror = () => failed(new Error('simd.wasm.js is missing beside this page'));
+        script.src = `${name}.js`;
+        script.onload = done;
+        script.onerror = () => failed(new Error(`${name}.js is missing beside this page`));
         document.head.append(script);
     });
+    const packed = Uint8Array.from(atob(globalThis.croftonBytes[name]), (c) => c.charCodeAt(0));
+    return new Uint8Array(await new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream('deflate'))).arrayBuffer());
 }
 
 async function start() {
     if (typeof WebAssembly !== 'object')
         return say('This browser has no WebAssembly, or it is switched off. The page needs it for culling; the guides work without.');
-    const gl = element('view').getContext('webgl2', { antialias: !address.has('plainly'), preserveDrawingBuffer: true });
+    const gl = element('view').getContext('webgl2', { antialias: false, preserveDrawingBuffer: true });
     if (!gl) return say('This browser gives no WebGL 2 here. The page needs it for drawing; the guides work without.');
     element('view').addEventListener('webglcontextlost', () => say('The graphics driver stopped WebGL. Load the page again.'));
-    const crofton = await load({ wasmBinary: await bytesFromScript() });
-    const objects = makeTown(), page = new Page(gl, new Culling(crofton, objects), objects);
+    const [wasmBinary, bytes] = await Promise.all(['simd.wasm', 'town'].map(bytesFromScript));
+    const crofton = await load({ wasmBinary }), town = readTown(bytes), page = new Page(gl, new Culling(crofton, town), town);
     page.connect();
     VERDICTS.forEach((name, verdict) => {
-        element(name).parentElement.style.setProperty('--tint', `rgb(${COLOURS[verdict].map((c) => Math.round(255 * c))})`);
+        element(name).style.setProperty('--tint', `rgb(${COLOURS[verdict].map((c) => Math.round(255 * c))})`);
     });
     element('build').textContent = `Crofton ${crofton.version}`;
     let last;

@@ -330,6 +330,8 @@ for (const build of BUILDS) {
             assert.ok(object === wall.index || object === beside.index);
             assert.ok(triangles > 0n && triangles >> BigInt(clusters[cluster].triangleCount) === 0n);
         }
+        assert.deepEqual([...visible.triangleWords], visible.triangles.flatMap(({ object, cluster, triangles }) =>
+            [object, cluster, Number(triangles & 0xffffffffn), Number(triangles >> 32n)]));
         assert.equal(world.clustersOf(world.addMesh(CUBE.positions, CUBE.indices)).clusters.length, 0);
         const bad = (request, status) => assert.throws(() => world.view(request, visible), refused(status));
         bad({}, 'invalid argument');
