@@ -25,7 +25,7 @@ foreach(component bake study render)
     endif()
 endforeach()
 if(TARGET crofton_cli)
-    install(TARGETS crofton_cli COMPONENT tools)
+    install(TARGETS crofton_cli crofton_study_cli COMPONENT tools)
     install(FILES ${PROJECT_SOURCE_DIR}/packaging/crofton.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
             RENAME crofton COMPONENT tools)
     install(FILES ${PROJECT_SOURCE_DIR}/packaging/_crofton DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions COMPONENT tools)

@@ -3,8 +3,11 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <iostream>
 #include <map>
@@ -393,11 +396,16 @@ int CommandLine::run(int argc, char** argv) {
     try {
         app_->parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
     } catch (const CLI::ParseError& error) {
-        if (error.get_exit_code() == 0) return app_->exit(error);
-        std::cerr << usage_error(*app_, error, arguments);
-        return kBadInput;
+        if (error.get_exit_code() != 0) {
+            std::cerr << usage_error(*app_, error, arguments);
+            return kBadInput;
+        }
+        status_ = app_->exit(error);  // --help
     }
-    return status_;
+    // Output may still be in the buffer; a full disk shows only when it is flushed.
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status_;
+    std::fprintf(stderr, "crofton: standard output: cannot write: %s\n", std::strerror(errno));
+    return kBadInput;
 }
 
 }  // namespace crofton::cli

@@ -7,6 +7,7 @@ namespace crofton::cli {
 
 void add_fit_command(CommandLine& line);
 void add_bake_command(CommandLine& line);
+void add_bounds_command(CommandLine& line);
 void add_collide_command(CommandLine& line);
 void add_frames_command(CommandLine& line);
 void add_hierarchy_command(CommandLine& line);
@@ -17,6 +18,36 @@ void add_pvs_command(CommandLine& line);
 void add_radiosity_command(CommandLine& line);
 void add_triangulate_command(CommandLine& line);
 void add_verify_command(CommandLine& line);
+void add_views_command(CommandLine& line);
 void add_view_command(CommandLine& line);  // where GLFW and Dear ImGui are installed
+
+constexpr const char* kDescription =
+    "Frustum culling, collision detection and triangle counts, chosen by integral geometry.";
+
+// Sub-commands that the program `crofton-study` has. `crofton` lists them, and starts that program for them.
+struct StudyCommand {
+    const char* name;
+    const char* description;
+    bool in_group;  // called as `crofton study NAME`
+
+    Command add_to(CommandLine& line) const {
+        return in_group ? line.study_command(name, description) : line.command(name, description);
+    }
+};
+inline constexpr StudyCommand kMerge{"merge", "Merge the parts of a bake that ran as shards", false};
+inline constexpr StudyCommand kVerify{"verify", "Check the mathematical claims behind Crofton, one row each", false};
+inline constexpr StudyCommand kMeasure{
+    "measure", "Test Crofton's formula on a mesh: area, volume and curvature, exact and by lines", true};
+inline constexpr StudyCommand kLines{"lines", "Compare methods to draw global lines through a scene", true};
+inline constexpr StudyCommand kHierarchy{
+    "hierarchy", "Chains of plane bounds, each the best under the ones before it, as in the paper", true};
+inline constexpr StudyCommand kRadiosity{"radiosity",
+                                         "Light a scene by global lines and bake the light into vertex colours", true};
+inline constexpr StudyCommand kBounds{"bounds", "Compare spheres, boxes and k-DOPs around meshes by what they cost",
+                                      true};
+inline constexpr StudyCommand kViews{
+    "views", "Compare boxes for the directions of a camera path with boxes for all directions", true};
+inline constexpr StudyCommand kStudyCommands[] = {kMerge,  kVerify, kMeasure,   kLines,
+                                                  kBounds, kViews,  kHierarchy, kRadiosity};
 
 }  // namespace crofton::cli

@@ -7,9 +7,9 @@
 #include <memory>
 
 #include "commands.hpp"
-#include "fit_criterion.hpp"
-#include "fit_modes.hpp"
+#include "criterion.hpp"
 #include "fit_output.hpp"
+#include "fit_planar.hpp"
 #include "interrupt.hpp"
 #include "json/json.hpp"
 #include "mesh_file.hpp"
@@ -24,28 +24,9 @@ struct FitRequest {
     std::vector<std::string> files;
     std::string criterion = "perimeter", quality = "exact", json_path, svg_path;
     double budget_seconds = 0.0;  // 0: none
-    bool planar = false, trees = false;
-    std::string bounds, views, directions;
-    double region = 20.0, triangle_cost = 1.0;
+    bool planar = false;
     ReadOptions read;
 };
-
-// "x,y,z;x,y,z;…"; none of an empty text.
-Result<std::vector<glm::dvec3>> parse_directions(const std::string& text) {
-    std::vector<glm::dvec3> directions;
-    for (std::size_t at = 0; at < text.size();) {
-        const std::size_t end = std::min(text.find(';', at), text.size());
-        const std::string one = text.substr(at, end - at);
-        glm::dvec3 d;
-        int used = 0;
-        if (std::sscanf(one.c_str(), "%lf,%lf,%lf%n", &d.x, &d.y, &d.z, &used) != 3 ||
-            static_cast<std::size_t>(used) != one.size())
-            return fail(ErrorCode::parse, directions.size(), "--directions: " + one + " is not x,y,z");
-        directions.push_back(d);
-        at = end + 1;
-    }
-    return directions;
-}
 
 Result<FittedBox> fit_box(std::span<const glm::dvec3> points, const measure::Criterion& criterion,
                           const FitRequest& request) {
@@ -119,25 +100,8 @@ int run_fit(const FitRequest& request) {
         const auto status = run_fit_planar({request.files, request.json_path, request.svg_path, request.read});
         return status ? *status : report_error("", status.error());
     }
-    if (!request.views.empty()) {
-        if (!request.svg_path.empty())
-            return report_error("", Error{ErrorCode::invalid_argument, kNoItem, "fit: --views draws no --svg"});
-        const auto status =
-            run_fit_views({request.files, request.views, request.json_path, request.trees, request.read});
-        return status ? *status : report_error("", status.error());
-    }
     const auto criterion = parse_criterion(request.criterion, request.read);
     if (!criterion) return report_error("", criterion.error());
-    if (!request.bounds.empty()) {
-        if (!request.svg_path.empty())
-            return report_error("", Error{ErrorCode::invalid_argument, kNoItem, "fit: --bounds draws no --svg"});
-        const auto directions = parse_directions(request.directions);
-        if (!directions) return report_error("", directions.error());
-        const auto status =
-            run_fit_bounds({request.files, request.criterion, request.json_path, *criterion, request.bounds == "best",
-                            request.region, request.triangle_cost, *directions, request.read});
-        return status ? *status : report_error("", status.error());
-    }
     catch_interrupts();
     std::vector<FittedMesh> meshes;
     {
@@ -193,44 +157,9 @@ void add_fit_command(CommandLine& line) {
     command.option("--json", request->json_path, "Write the boxes as JSON; - for stdout, instead of the text")
         .writable_file_or_stdout();
     command.option("--svg", request->svg_path, "Draw hulls and boxes as SVG; - for stdout").writable_file_or_stdout();
-    const Option bounds = command
-                              .option("--bounds", request->bounds,
-                                      "Compare sphere, boxes and k-DOPs by the expected cost C_v + p C_p of a test and "
-                                      "of the queries that pass it: all, or the best for each mesh")
-                              .one_of({"all", "best"});
-    command
-        .option("--region", request->region,
-                "With --bounds: radius of the sphere that queries hit, in radii of the mesh")
-        .between(1.0, 1e9)
-        .show_default()
-        .needs(bounds);
-    command
-        .option("--triangle-cost", request->triangle_cost, "With --bounds: nanoseconds for each triangle that passes")
-        .not_negative()
-        .show_default()
-        .needs(bounds);
-    command
-        .option(
-            "--directions", request->directions,
-            "With --bounds: add a k-DOP of these directions, as x,y,z;x,y,z;...: one for each pair of opposite faces")
-        .needs(bounds);
-    const Option views =
-        command
-            .option("--views", request->views,
-                    "Fit boxes for the directions of a recorded camera path (the JSON of 'crofton frames'), and "
-                    "compare their false positives with those of boxes for uniform directions")
-            .excludes(bounds);
-    command
-        .flag("--trees", request->trees,
-              "With --views: the files are scenes; count the nodes that the path visits in trees for its directions "
-              "and in default trees")
-        .needs(views);
-    command
-        .flag("--planar", request->planar,
-              "Fit rectangles, disc and triangles around polygons (.poly, .json, .geojson, .wad), by perimeter and by "
-              "area")
-        .excludes(bounds)
-        .excludes(views);
+    command.flag("--planar", request->planar,
+                 "Fit rectangles, disc and triangles around polygons (.poly, .json, .geojson, .wad), by perimeter and "
+                 "by area");
     command.footer(
         "The criterion is alpha V + beta F + gamma M: volume, surface area and integral of mean curvature (pi times "
         "the edge sum).\n"
@@ -240,8 +169,6 @@ void add_fit_command(CommandLine& line) {
         "  crofton fit bunny.obj\n"
         "  crofton fit bunny.obj --criterion frustum:1.0472,1.7778,0.1,1000 --json -\n"
         "  crofton fit *.obj --criterion rays:10 --quality tight --svg boxes.svg\n"
-        "  crofton fit *.obj --bounds best --criterion frustum:1.0472,1.7778,0.1,1000\n"
-        "  crofton fit bunny.obj --bounds all --directions '1,0,0;0,1,0;0,0,1;1,1,0;1,-1,0'\n"
         "  crofton fit --planar counties.poly --svg bounds.svg");
     add_read_options(command, request->read);
     command.action([request, budget] {

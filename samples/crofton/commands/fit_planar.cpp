@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fit_modes.hpp"
+#include "fit_planar.hpp"
 
 #include <algorithm>
 #include <array>

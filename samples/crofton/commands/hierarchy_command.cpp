@@ -184,8 +184,7 @@ Result<int> run_hierarchy(const HierarchyOptions& options) {
 
 void add_hierarchy_command(CommandLine& line) {
     auto options = std::make_shared<HierarchyOptions>();
-    Command command = line.study_command(
-        "hierarchy", "Chains of plane bounds, each the best under the ones before it, as in the paper");
+    Command command = kHierarchy.add_to(line);
     command.footer(
         "A bound is tested only by lines that hit all its ancestors. The best bound under them is not the tightest: in "
         "the\n"

@@ -149,7 +149,7 @@ Result<void> run_lines(const LinesOptions& options) {
 
 void add_lines_command(CommandLine& line) {
     auto options = std::make_shared<LinesOptions>();
-    Command command = line.study_command("lines", "Compare methods to draw global lines through a scene");
+    Command command = kLines.add_to(line);
     command.footer(
         "Each method of drawing uniform lines estimates the scene's surface S, which is known exactly, as\n"
         "S = crossings a line * F / 2, where F is the surface of the body that the lines fill (docs/theory.md).\n"

@@ -148,8 +148,7 @@ Result<void> run_measure(const MeasureOptions& options) {
 
 void add_measure_command(CommandLine& line) {
     auto options = std::make_shared<MeasureOptions>();
-    Command command = line.study_command(
-        "measure", "Test Crofton's formula on a mesh: area, volume and curvature, exact and by lines");
+    Command command = kMeasure.add_to(line);
     command.footer(std::string("Columns: the measure; the count that estimates it; the value predicted from the "
                                "triangles; the estimate; its\n"
                                "standard error; the difference in standard errors (z). docs/theory.md derives the "

@@ -67,7 +67,7 @@ Result<int> run_merge(const MergeRequest& options) {
 
 void add_merge_command(CommandLine& line) {
     auto options = std::make_shared<MergeRequest>();
-    Command command = line.command("merge", "Merge the parts of a bake that ran as shards");
+    Command command = kMerge.add_to(line);
     command
         .option(
             "parts", options->parts,

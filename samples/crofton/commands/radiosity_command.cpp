@@ -311,8 +311,7 @@ Result<int> run_radiosity(const RadiosityOptions& options) {
 
 void add_radiosity_command(CommandLine& line) {
     auto options = std::make_shared<RadiosityOptions>();
-    Command command =
-        line.study_command("radiosity", "Light a scene by global lines and bake the light into vertex colours");
+    Command command = kRadiosity.add_to(line);
     command.footer(
         "Colours are reflectances. Those above 0.9, as of white paint, count as 0.9, so that light ends. Triangles "
         "without area are left out.\n"

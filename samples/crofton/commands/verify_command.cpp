@@ -74,7 +74,7 @@ int run_verify(const VerifyRequest& request) {
 
 void add_verify_command(CommandLine& line) {
     auto request = std::make_shared<VerifyRequest>();
-    Command command = line.command("verify", "Check the mathematical claims behind Crofton, one row each");
+    Command command = kVerify.add_to(line);
     std::vector<std::string> names;
     for (const Topic& topic : kTopics) names.emplace_back(topic.name);
     command

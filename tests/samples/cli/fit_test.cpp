@@ -269,12 +269,10 @@ TEST_SUITE("cli/fit") {
     }
 
     TEST_CASE(
-        "--bounds: six kinds a mesh, none below the hull, one is the best, a far region asks for the cheap test") {
+        "study bounds: six kinds a mesh, none below the hull, one is the best, a far region asks for the cheap test") {
         const std::string box = file("bounds.obj", turned_box());
-        CHECK(run_cli("fit --bounds some" + box).status == 2);
-        CHECK(run_cli("fit --bounds all --region 0.5" + box).status == 2);
-        CHECK(run_cli("fit --bounds all --svg -" + box).status == 2);
-        const CliRun run = run_cli("fit --bounds all --criterion area --json -" + box);
+        CHECK(run_cli("study bounds --region 0.5" + box).status == 2);
+        const CliRun run = run_cli("study bounds --criterion area --json -" + box);
         REQUIRE(run.status == 0);
         const auto mesh = run.json().at("meshes")[0];
         REQUIRE(mesh.at("bounds").size() == 6);
@@ -287,34 +285,31 @@ TEST_SUITE("cli/fit") {
         for (const auto& bound : mesh.at("bounds")) CHECK(number(bound, "passed") <= 4096.0);
         CHECK(number(mesh.at("bounds")[2], "passed") <= number(mesh.at("bounds")[0], "passed") * 1.02);
         CHECK(number(mesh.at("bounds")[5], "passed") > 0.0);
-        const CliRun own = run_cli("fit --bounds all --directions '1,0,0;0,1,0;0,0,1;1,1,0' --json -" + box);
+        const CliRun own = run_cli("study bounds --directions '1,0,0;0,1,0;0,0,1;1,1,0' --json -" + box);
         REQUIRE(own.status == 0);
         CHECK(own.json().at("meshes")[0].at("bounds")[6].at("bound") == "own 8-DOP");
-        CHECK(run_cli("fit --bounds all --directions '1,0;2' " + box).status == 2);
-        CHECK(run_cli("fit --bounds all --directions '1,0,0;0,1,0' " + box).err.find("plane") != std::string::npos);
-        CHECK(run_cli("fit --bounds all --directions '1,0,0;0,1,0;0,0,nan' " + box).status == 2);
+        CHECK(run_cli("study bounds --directions '1,0;2' " + box).status == 2);
+        CHECK(run_cli("study bounds --directions '1,0,0;0,1,0' " + box).err.find("plane") != std::string::npos);
+        CHECK(run_cli("study bounds --directions '1,0,0;0,1,0;0,0,nan' " + box).status == 2);
         // 4 × 2 × 1: the box itself, and the sphere around it.
         CHECK(number(mesh.at("bounds")[2], "value") == doctest::Approx(28.0).epsilon(1e-5));
         CHECK(number(mesh.at("bounds")[0], "value") == doctest::Approx(4.0 * 3.14159265 * 21.0 / 4.0).epsilon(1e-6));
         const CliRun costly =
-            run_cli("fit --bounds best --criterion area --region 1 --triangle-cost 1e9 --json -" + box);
+            run_cli("study bounds --best --criterion area --region 1 --triangle-cost 1e9 --json -" + box);
         const auto best = costly.json().at("meshes")[0].at("best");
         CHECK(best != "sphere");
         CHECK(best != "aligned box");
     }
 
-    TEST_CASE(
-        "--views --trees: trees for a path's directions see what plain ones see, and say how many nodes it takes") {
+    TEST_CASE("study views: a flat box gains by a path that looks one way, and a missing path is named") {
         const std::string path = file("path.json", R"([{"position": [0, 2, 0], "forward": [1, 0, 0]},)"
-                                                   R"( {"position": [20, 2, 5], "forward": [0, -0.1, 1]}])");
-        const CliRun run = run_cli("fit --views" + path + " --trees town --json -");
+                                                   R"( {"position": [20, 2, 5], "forward": [1, -0.1, 0]}])"),
+                          box = file("seen.obj", turned_box());
+        const CliRun run = run_cli("study views" + path + box + " --json -");
         REQUIRE(run.status == 0);
-        const auto report = run.json();
-        for (const auto& weight : report.at("weights")) CHECK(weight.get<double>() < 2.0);
-        const auto scene = report.at("scenes")[0];
-        CHECK(number(scene, "plain_nodes") > 100.0);
-        CHECK(number(scene, "directed_nodes") > 100.0);
-        CHECK(number(scene, "directed_seen") == doctest::Approx(number(scene, "plain_seen")).epsilon(1e-3));
-        CHECK(run_cli("fit --views" + path + " --trees nowhere.glb").status == 2);
+        const auto mesh = run.json().at("meshes")[0];
+        CHECK(number(mesh, "directed_measure") <= number(mesh, "plain_measure") * (1.0 + 1e-9));
+        CHECK(number(mesh, "hull_measure") <= number(mesh, "directed_measure") * (1.0 + 1e-9));
+        CHECK(run_cli("study views nowhere.json" + box).err.find("nowhere.json") != std::string::npos);
     }
 }

@@ -39,6 +39,22 @@ TEST_SUITE("cli/usage") {
         CHECK(run_cli("frames town street").err.find("'street' is one argument too many") != std::string::npos);
     }
 
+    TEST_CASE("where crofton-study was not built, verify says which target to build, and the other commands work") {
+        const std::string alone = scratch().file("crofton_alone");
+        std::filesystem::copy_file(CROFTON_CLI, alone);
+        const auto run = [&](const char* arguments) {
+            const std::string err = scratch().file("err");
+            const int status = std::system(("'" + alone + "' " + arguments + " >/dev/null 2>'" + err + "'").c_str());
+            return std::pair(WEXITSTATUS(status), contents_of(err));
+        };
+        for (const char* arguments : {"verify", "help verify", "merge a --out b", "study measure room"}) {
+            const auto [status, err] = run(arguments);
+            CHECK(status == 2);
+            CHECK(err.find("--target crofton_study_cli") != std::string::npos);
+        }
+        CHECK(run("collide --help").first == 0);
+    }
+
     TEST_CASE("an option that needs another says which one, and the exit status is 2") {
         write_contents(scratch().file("square.poly"), "P square 1\n4 0 0 2 0 2 2 0 2\n");
         write_contents(scratch().file("tetra.obj"),
@@ -62,9 +78,6 @@ TEST_SUITE("cli/usage") {
             {"triangulate " + poly + " --tolerance 0.1", "for meshes"},
             {"triangulate " + poly + " --attribute-tolerance 0.1", "for meshes"},
             {"fit " + obj + " --budget 1 --quality fast", "--quality exact"},
-            {"fit " + obj + " --region 9", "--bounds"},
-            {"fit " + obj + " --trees", "--views"},
-            {"fit " + poly + " --planar --bounds all", "--bounds"},
             {"frames room --no-draw --ids", "--json"},
             {"frames room --no-draw --occluders 3", "--occlude"},
             {"frames room --no-draw --instances 30", "town only"},
@@ -116,7 +129,7 @@ TEST_SUITE("cli/usage") {
             {"study radiosity room --error nan", "--error: 'nan' is not a number above 0"},
             {"study radiosity room --sun -1", "--sun: '-1' is not a number from 0"},
             {"fit room --budget nan", "--budget: 'nan' is not a number from 0"},
-            {"fit room --bounds all --region nan", "--region: 'nan' is not a number in [1 - 1e+09]"},
+            {"study bounds room --region nan", "--region: 'nan' is not a number in [1 - 1e+09]"},
             {"view --no-window --after 1 --scale nan", "--scale: 'nan' is not a number in [0.5 - 8]"},
         };
         for (const auto& c : cases) {
@@ -133,10 +146,6 @@ TEST_SUITE("cli/usage") {
         const struct {
             const char *arguments, *option, *other;
         } cases[] = {
-            {"fit room --region 5", "--region", "--bounds"},
-            {"fit room --triangle-cost 5", "--triangle-cost", "--bounds"},
-            {"fit room --directions '1,0,0'", "--directions", "--bounds"},
-            {"fit room --trees", "--trees", "--views"},
             {"collide room room --max-vertices 9", "--max-vertices", "--hulls"},
             {"study lines room --patches 9", "--patches", "--factors"},
             {"study radiosity room --stored-lines 9", "--stored-lines", "--light-field"},

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fit_modes.hpp"
-
+// crofton study bounds: spheres, boxes and k-DOPs around each mesh, and which of them costs least.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -12,8 +11,10 @@
 #include <cstdio>
 #include <functional>
 #include <glm/geometric.hpp>
+#include <memory>
 
 #include "commands.hpp"
+#include "criterion.hpp"
 #include "json/json.hpp"
 #include "mesh_file.hpp"
 #include "report.hpp"
@@ -21,7 +22,19 @@
 namespace crofton::cli {
 namespace {
 
-constexpr std::uint64_t kViews = 4096;
+constexpr std::uint64_t kViewCount = 4096;
+
+struct BoundsRequest {
+    std::vector<std::string> files;
+    std::string criterion_name = "perimeter", directions_text, json_path;
+    bool only_best = false;
+    double region = 20.0;        // radius of the sphere that queries hit, over that of the mesh's sphere
+    double triangle_cost = 1.0;  // nanoseconds for a triangle that is passed on
+    ReadOptions read;
+
+    measure::Criterion criterion = {};
+    std::vector<glm::dvec3> directions = {};  // half of a k-DOP's, the user's own; empty: none
+};
 
 struct Candidate {
     std::string kind;
@@ -49,7 +62,7 @@ std::vector<Frustum> views_around(const Sphere& sphere, double region) {
     prototype.near_distance = 0.01 * sphere.radius;
     prototype.far_distance = 2.0 * half_width;
     const Aabb room{sphere.center - half_width, sphere.center + half_width};
-    for (std::uint64_t i = 0; i < kViews; ++i)
+    for (std::uint64_t i = 0; i < kViewCount; ++i)
         if (const auto frustum = frustum_of(sampling::random_camera(prototype, room, points.at<6>(i))))
             views.push_back(*frustum);
     return views;
@@ -68,7 +81,7 @@ double nanoseconds(const std::vector<Frustum>& views, const std::function<cull::
     return least;
 }
 
-Result<MeshBounds> bounds_of(const std::string& file, const BoundsRun& run) {
+Result<MeshBounds> bounds_of(const std::string& file, const BoundsRequest& run) {
     MeshBounds result;
     result.file = file;
     const auto mesh = load_mesh(file, run.read);
@@ -132,7 +145,7 @@ Json to_json(const MeshBounds& mesh) {
     return {{"file", mesh.file},
             {"triangles", mesh.triangles},
             {"hull", mesh.hull},
-            {"views", kViews},
+            {"views", kViewCount},
             {"best", mesh.candidates[mesh.best].kind},
             {"bounds", std::move(list)}};
 }
@@ -148,17 +161,41 @@ void print(const MeshBounds& mesh, bool only_best) {
     }
 }
 
-}  // namespace
+// "x,y,z;x,y,z;…"; none of an empty text.
+Result<std::vector<glm::dvec3>> parse_directions(const std::string& text) {
+    std::vector<glm::dvec3> directions;
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t end = std::min(text.find(';', at), text.size());
+        const std::string one = text.substr(at, end - at);
+        glm::dvec3 d;
+        int used = 0;
+        if (std::sscanf(one.c_str(), "%lf,%lf,%lf%n", &d.x, &d.y, &d.z, &used) != 3 ||
+            static_cast<std::size_t>(used) != one.size())
+            return fail(ErrorCode::parse, directions.size(), "--directions: " + one + " is not x,y,z");
+        directions.push_back(d);
+        at = end + 1;
+    }
+    return directions;
+}
 
-Result<int> run_fit_bounds(const BoundsRun& run) {
+// The cost of N_v views is N_v·C_v + N_p·C_p, measured: each bound is tested against the same views, through
+// cull::classify. C_v is the time of a test, N_p the number of views that see the bound, C_p the mesh's triangles times
+// their cost. Beside it stands the share that the criterion predicts.
+Result<int> run_bounds(BoundsRequest& run) {
+    const auto criterion = parse_criterion(run.criterion_name, run.read);
+    if (!criterion) return tl::unexpected(criterion.error());
+    auto directions = parse_directions(run.directions_text);
+    if (!directions) return tl::unexpected(directions.error());
+    run.criterion = *criterion;
+    run.directions = std::move(*directions);
     Json list = Json::array();
     if (run.json_path != "-")
         std::printf(
             "criterion %s; %zu views from within %g times the mesh's radius; %g ns a triangle; cost = (N_v C_v + N_p "
             "C_p) "
             "/ N_v\n%-24s %9s %-13s %14s %10s %10s %8s %9s %12s\n",
-            run.criterion_name.c_str(), std::size_t{kViews}, 2.0 * run.region, run.triangle_cost, "mesh", "triangles",
-            "bound", "value", "over hull", "gap <=", "N_p", "C_v ns", "cost ns");
+            run.criterion_name.c_str(), std::size_t{kViewCount}, 2.0 * run.region, run.triangle_cost, "mesh",
+            "triangles", "bound", "value", "over hull", "gap <=", "N_p", "C_v ns", "cost ns");
     for (const std::string& file : run.files) {
         const auto mesh = bounds_of(file, run);
         if (!mesh) return tl::unexpected(mesh.error());
@@ -171,6 +208,38 @@ Result<int> run_fit_bounds(const BoundsRun& run) {
             !written)
             return tl::unexpected(written.error());
     return kSuccess;
+}
+
+}  // namespace
+
+void add_bounds_command(CommandLine& line) {
+    auto request = std::make_shared<BoundsRequest>();
+    Command command = kBounds.add_to(line);
+    command.option("files", request->files, "OBJ, glTF, GLB or WAD files").required();
+    command.option("--criterion", request->criterion_name, kCriterionSyntax).show_default();
+    command.flag("--best", request->only_best, "Print only the bound that costs least");
+    command.option("--region", request->region, "Radius of the sphere that queries hit, in radii of the mesh")
+        .between(1.0, 1e9)
+        .show_default();
+    command.option("--triangle-cost", request->triangle_cost, "Nanoseconds for each triangle that passes")
+        .not_negative()
+        .show_default();
+    command.option("--directions", request->directions_text,
+                   "Add a k-DOP of these directions, as x,y,z;x,y,z;...: one for each pair of opposite faces");
+    command.option("--json", request->json_path, "Write the table as JSON; - for stdout, instead of the text")
+        .writable_file_or_stdout();
+    command.footer(
+        "Compares sphere, boxes and k-DOPs by the expected cost C_v + p C_p of a test and of the queries that pass "
+        "it.\n"
+        "\n"
+        "Examples:\n"
+        "  crofton study bounds *.obj --best --criterion frustum:1.0472,1.7778,0.1,1000\n"
+        "  crofton study bounds bunny.obj --directions '1,0,0;0,1,0;0,0,1;1,1,0;1,-1,0'");
+    add_read_options(command, request->read);
+    command.action([request] {
+        const auto status = run_bounds(*request);
+        return status ? *status : report_error("", status.error());
+    });
 }
 
 }  // namespace crofton::cli

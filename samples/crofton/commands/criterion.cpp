@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fit_criterion.hpp"
+#include "criterion.hpp"
 
 #include <charconv>
 #include <crofton/geometry/mesh.hpp>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fit_modes.hpp"
-
+// crofton study views: boxes for the directions in which a recorded camera path looks, and what they save.
 #include <algorithm>
 #include <cmath>
 #include <crofton/cull/classify.hpp>
@@ -9,6 +8,7 @@
 #include <crofton/study/query_distribution.hpp>
 #include <cstdio>
 #include <glm/geometric.hpp>
+#include <memory>
 
 #include "commands.hpp"
 #include "json/json.hpp"
@@ -84,6 +84,13 @@ cull::Verdict by_planes(const Frustum& frustum, std::span<const glm::dvec3> corn
     return inside ? cull::Verdict::inside : cull::Verdict::straddling;
 }
 
+struct ViewsRequest {
+    std::string path;  // as pipeline::load_camera_path takes it
+    std::vector<std::string> files;
+    std::string json_path;
+    ReadOptions read;
+};
+
 struct Counted {
     std::uint64_t plain = 0, directed = 0;
 };
@@ -113,17 +120,16 @@ Counted count(const std::vector<glm::dvec3>& hull, const study::DirectedFit& dir
     return counted;
 }
 
-}  // namespace
-
-Result<int> run_fit_views(const ViewsRun& run) {
-    const auto path = pipeline::load_camera_path(run.views_path);
+// For each mesh as it stands in its file: the box that uniform directions ask for beside the one that the path's do;
+// the ratio of their measures, by the formula for boxes; and of their improper tests, counted: the mesh is put at
+// random near the faces of the path's view volumes.
+Result<int> run_views(const ViewsRequest& run) {
+    const auto path = pipeline::load_camera_path(run.path);
     if (!path) return tl::unexpected(path.error());
     const auto distribution = study::QueryDistribution::of_views(path->cameras);
     if (!distribution)
         return fail(distribution.error().code, distribution.error().item,
-                    run.views_path + ": " + distribution.error().message);
-    if (run.trees)
-        return run_fit_view_trees({run.files, run.views_path, run.json_path, path->cameras, *distribution, run.read});
+                    run.path + ": " + distribution.error().message);
     const Faces faces(path->cameras);
     Json list = Json::array();
     const glm::dvec3 mean(distribution->mean_cosine({1, 0, 0}), distribution->mean_cosine({0, 1, 0}),
@@ -132,10 +138,10 @@ Result<int> run_fit_views(const ViewsRun& run) {
         std::printf(
             "%s: %zu views; mean |cosine| of their faces' normals with x %.4f, y %.4f, z %.4f (uniform: 0.5)\n"
             "%-24s %14s %14s %11s %11s %11s %11s\n",
-            run.views_path.c_str(), path->cameras.size(), mean.x, mean.y, mean.z, "mesh", "plain", "directed",
-            "predicted", "improper", "improper", "saved");
+            run.path.c_str(), path->cameras.size(), mean.x, mean.y, mean.z, "mesh", "plain", "directed", "predicted",
+            "improper", "improper", "saved");
     for (const std::string& file : run.files) {
-        const auto points = load_points(file);
+        const auto points = load_points(file, run.read);
         if (!points) return tl::unexpected(points.error());
         const auto hull = convex_hull(std::span<const glm::dvec3>(*points));
         const auto directed = study::fit_box_for(*points, *distribution, study::QueryKind::planes);
@@ -171,6 +177,28 @@ Result<int> run_fit_views(const ViewsRun& run) {
             !written)
             return tl::unexpected(written.error());
     return kSuccess;
+}
+
+}  // namespace
+
+void add_views_command(CommandLine& line) {
+    auto request = std::make_shared<ViewsRequest>();
+    Command command = kViews.add_to(line);
+    command.option("path", request->path, "A recorded camera path, the JSON of 'crofton frames'").required();
+    command.option("files", request->files, "Meshes").required();
+    command.option("--json", request->json_path, "Write the table as JSON; - for stdout, instead of the text")
+        .writable_file_or_stdout();
+    command.footer(
+        "Fits boxes for the directions of the path, and compares their false positives with those of boxes for uniform "
+        "directions.\n"
+        "\n"
+        "Example:\n"
+        "  crofton study views flight.json bunny.obj");
+    add_read_options(command, request->read);
+    command.action([request] {
+        const auto status = run_views(*request);
+        return status ? *status : report_error("", status.error());
+    });
 }
 
 }  // namespace crofton::cli
