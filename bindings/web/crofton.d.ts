@@ -19,6 +19,9 @@ export interface CullOptions { conservative?: boolean; treeOrder?: boolean }
 export interface ObjectHandle { readonly kind: 'object'; readonly index: number; readonly generation: number }
 export interface MeshHandle { readonly kind: 'mesh'; readonly index: number; readonly generation: number }
 export interface ObjectHit { object: ObjectHandle; user: number; t: number; point: number[]; triangle: number; normal: number[]; startedInside: boolean }
+export interface ObjectRef { object: ObjectHandle; user: number }
+/** One of the three. */
+export interface QueryShape { box?: BoxLike; sphere?: { center: Vector; radius: number }; capsule?: { begin: Vector; end: Vector; radius: number } }
 export interface Triangulation {
     indices: Uint32Array;
     /** Total length of the diagonals. */
@@ -101,6 +104,8 @@ export interface World extends Owned {
     readonly count: number;
     addMesh(positions: Float32Array, indices: Uint32Array | Uint16Array, how?: { clusters?: boolean; oneSided?: boolean }): MeshHandle;
     clustersOf(mesh: MeshHandle): { clusters: { firstTriangle: number; triangleCount: number }[]; triangleOrder: Uint32Array };
+    /** Error: objects use the mesh. */
+    removeMesh(mesh: MeshHandle): void;
     findOccluders(mesh: MeshHandle): void;
     setConvexOccluder(mesh: MeshHandle, positions: Float32Array): void;
     /** `transform`: sixteen numbers by columns, the last row 0, 0, 0, 1. */
@@ -108,6 +113,8 @@ export interface World extends Owned {
         user?: number; layers?: number; occludes?: boolean }): ObjectHandle;
     remove(object: ObjectHandle): void;
     setHidden(object: ObjectHandle, hidden: boolean): void;
+    setUser(object: ObjectHandle, user: number): void;
+    setLayers(object: ObjectHandle, layers: number): void;
     setBox(object: ObjectHandle, box: BoxLike): void;
     setTransform(object: ObjectHandle, transform: Vector): void;
     contains(object: ObjectHandle): boolean;
@@ -115,6 +122,11 @@ export interface World extends Owned {
     /** `camera` or `volume`, or both: then objects are tested against the volume, and hidden from the camera. */
     view(request: ViewRequest, visible: ViewResult): ViewResult;
     raycast(origin: Vector, direction: Vector, maxT?: number, layers?: number): ObjectHit | null;
+    raycastAny(origin: Vector, direction: Vector, maxT?: number, layers?: number): boolean;
+    /** By index. Touching counts. */
+    overlap(shape: QueryShape, layers?: number): ObjectRef[];
+    /** `distance` is 0 for an object that overlaps. */
+    closest(shape: QueryShape, maxDistance?: number, layers?: number): (ObjectRef & { distance: number; onShape: number[]; onObject: number[] }) | null;
 }
 export interface Crofton {
     readonly version: string;

@@ -23,6 +23,7 @@ from urllib.parse import unquote
 
 ROOT = Path(__file__).resolve().parents[2]
 WEB = ROOT / "bindings/web"
+STYLE = Path("/usr/share/doxygen-awesome-css/doxygen-awesome.css")
 PAGE = ["town", "culling", "camera", "draw", "map", "main"]
 # The tabs of the start page: language, and the README that begins with a program in it.
 LANGUAGES = [("C++", "README.md", "cpp"), ("Python", "bindings/python/README.md", "python"), ("JavaScript", "bindings/web/README.md", "js"),
@@ -64,7 +65,10 @@ def write_reference(out, work):
                         "PROJECT_BINARY_DIR": str(out), "PROJECT_SOURCE_DIR": str(ROOT),
                         "CROFTON_REFERENCE_DIRS": " ".join(str(p) for p in sorted(ROOT.glob("engine/**/include")))}.items():
         text = text.replace(f"@{name}@", value)
-    run_doxygen(text + "\nSEARCHENGINE = YES\nSERVER_BASED_SEARCH = NO\n", work / "reference.txt")
+    style = f"HTML_EXTRA_STYLESHEET = {STYLE}\nGENERATE_TREEVIEW = YES\n" if STYLE.exists() else ""  # a dark scheme, and phones
+    run_doxygen(text + "\nSEARCHENGINE = YES\nSERVER_BASED_SEARCH = NO\n" + style, work / "reference.txt")
+    menu = out / "reference/menudata.js"  # leads back to the guides
+    menu.write_text(menu.read_text().replace("children:[", 'children:[\n{text:"Guides",url:"../index.html"},', 1))
 
 
 def git_files(*patterns):
@@ -82,7 +86,7 @@ def start_page(text):
     text = re.sub(r"^(!\[.*\]\(.*\))$", r"[\1](live/index.html)\n\n[Fly through a town in your browser](live/index.html){ .md-button .md-button--primary }", text, count=1, flags=re.M)
     tabs = "".join(f'=== "{name}"\n\n' + "".join(f"    {line}" for line in program_of(readme, language).splitlines(keepends=True)) + "\n"
                    for name, readme, language in LANGUAGES)
-    return text.replace(program_of("README.md", "cpp"), tabs)
+    return "---\nhide: [navigation]\n---\n\n" + text.replace(program_of("README.md", "cpp"), tabs)
 
 
 def python_reference():
@@ -113,9 +117,10 @@ def write_pages(pages):
                 shutil.copy(file, copy)
         # Lists and tables may follow a line of text, as on GitHub; mkdocs wants an empty line between.
         text = re.sub(r"^(?![-|\s]|\d+\. )(.+)\n(?=(?:- |\d+\. |\| ))", r"\1\n\n", text, flags=re.M)
-        text = re.sub(r"^(#+ .*\w)#$", r"\1\\#", text, flags=re.M)  # mkdocs takes the end of "## C#" for a closing mark
+        text = re.sub(r"^(#+ .*\w#)$", r"\1 #", text, flags=re.M)  # mkdocs takes the last # of "## C#" for a closing mark
         (pages / name).write_text(start_page(text) if name == "README.md" else text)
     (pages / "python.md").write_text(python_reference())
+    shutil.copy(WEB / "site.css", pages)
 
 
 class Links(HTMLParser):

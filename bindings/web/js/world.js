@@ -81,6 +81,18 @@ function arraysOf({ candidates, limits = {} }) {
     return arrays;
 }
 
+/** Layers as 32 bits; -1 is all of them, as ALL is. */
+function layersOf(layers) {
+    if (!(Number.isInteger(layers) && layers >= -(2 ** 31) && layers < 2 ** 32)) throw failure(1, `layers: ${layers} is no whole number of 32 bits`);
+    return layers >>> 0;
+}
+
+/** A user number's low and high half. */
+function halvesOf(user) {
+    if (!(Number.isInteger(user) && user >= 0 && user < 2 ** 53)) throw failure(1, 'user is a whole number below 2^53');
+    return [user % 2 ** 32, Math.floor(user / 2 ** 32)];
+}
+
 /** Holds objects and answers queries about them. Changes take effect in `update`. An object is `{ index, generation }`. */
 export class World extends Owned {
     constructor(memory) {
@@ -109,6 +121,8 @@ export class World extends Owned {
             return this.#handleAt(at + 48, 'mesh');
         });
     }
+    /** Error: objects use the mesh. */
+    removeMesh(mesh) { this.memory.call('world_remove_mesh', this.handle, this.#give(mesh, 'mesh', this.memory.scratch(16))); }
     /** Returns the clusters of a mesh, as of the last update: `{ clusters: [{ firstTriangle, triangleCount }], triangleOrder }`. */
     clustersOf(mesh) {
         const { memory } = this, at = this.#give(mesh, 'mesh', memory.scratch(32));
@@ -137,17 +151,16 @@ export class World extends Owned {
     /** `{ box: { center, halfExtents, axes } }`, `{ sphere: { center, radius } }` or `{ mesh, transform }`; `user`: a number. */
     add({ box, sphere, mesh, transform, user = 0, layers = ALL, occludes = true }) {
         if ([box, sphere, mesh].filter(Boolean).length !== 1) throw failure(1, 'an object has one of box, sphere and mesh');
-        if (!(Number.isInteger(user) && user >= 0 && user < 2 ** 53)) throw failure(1, 'user is a whole number below 2^53');
         const { memory } = this, at = memory.scratch(72 + 160 + 96 + 16), { words } = memory, first = at >> 2;
         memory.fill('default_object_description', at);
-        words.set([user % 2 ** 32, Math.floor(user / 2 ** 32)], first + 2);
+        words.set(halvesOf(user), first + 2);
         if (box || sphere) this.#writeBound(at + 72, box, sphere), words[first + 4] = at + 72;
         if (transform) this.#writeTransform(at + 232, transform), words[first + 5] = at + 232;
         if (mesh) {
             words[first + 6] = 1;
             this.#give(mesh, 'mesh', at + 32);
         }
-        words[first + 12] = layers;
+        words[first + 12] = layersOf(layers);
         words[first + 14] = occludes ? 1 : 0;
         memory.call('world_add', this.handle, at, at + 328);
         return this.#handleAt(at + 328, 'object');
@@ -155,6 +168,13 @@ export class World extends Owned {
     remove(object) { this.memory.call('world_remove', this.handle, this.#give(object, 'object', this.memory.scratch(16))); }
     setHidden(object, hidden) {
         this.#set(object, 8, (words, first) => { words[first + 17] = hidden ? 1 : 0; });
+    }
+    setUser(object, user) {
+        const halves = halvesOf(user);
+        this.#set(object, 1, (words, first) => words.set(halves, first + 2));
+    }
+    setLayers(object, layers) {
+        this.#set(object, 2, (words, first) => { words[first + 12] = layersOf(layers); });
     }
     setBox(object, box) {
         this.#set(object, 64, (words, first) => {
@@ -231,7 +251,7 @@ export class World extends Owned {
             words[first + 2] = place;
         }
         if (volume) words[first + 3] = volume.handle + 8;
-        words[first + 4] = layers;
+        words[first + 4] = layersOf(layers);
         if (occlusion) {
             const options = at + 432;
             memory.fill('default_occlusion_options', options);
@@ -275,13 +295,57 @@ export class World extends Owned {
     raycast(origin, direction, maxT = Infinity, layers = ALL) {
         const { memory } = this, at = memory.scratch(144), hit = at + 56 >> 2;
         memory.doubles.set([...numbersOf(origin, 3, 'origin'), ...numbersOf(direction, 3, 'direction'), maxT], at >> 3);
-        memory.call('world_raycast', this.handle, at, 1, layers, at + 56);
+        memory.call('world_raycast', this.handle, at, 1, layersOf(layers), at + 56);
         const { doubles, words } = memory;  // the call may have made the memory grow
         if (words[hit] === ALL) return null;
-        return { object: this.#handleAt(at + 56, 'object'), user: words[hit + 2] + 2 ** 32 * words[hit + 3], t: doubles[at + 72 >> 3],
+        return { object: this.#handleAt(at + 56, 'object'), user: this.#userAt(at + 64), t: doubles[at + 72 >> 3],
             point: [...doubles.subarray(at + 80 >> 3, at + 104 >> 3)], triangle: words[hit + 12] === ALL ? -1 : words[hit + 12],
             normal: [...doubles.subarray(at + 112 >> 3, at + 136 >> 3)], startedInside: (words[hit + 20] & 255) !== 0 };
     }
+
+    /** Tells whether a ray hits anything; faster than `raycast`. */
+    raycastAny(origin, direction, maxT = Infinity, layers = ALL) {
+        const { memory } = this, at = memory.scratch(64);
+        memory.doubles.set([...numbersOf(origin, 3, 'origin'), ...numbersOf(direction, 3, 'direction'), maxT], at >> 3);
+        memory.call('world_raycast_any', this.handle, at, layersOf(layers), at + 56);
+        return memory.words[at + 56 >> 2] !== 0;
+    }
+    /**
+     * Returns the objects that overlap `{ box }`, `{ sphere }` or `{ capsule: { begin, end, radius } }`, as `{ object, user }`, by index:
+     * triangles of meshes, boxes and spheres.
+     */
+    overlap(shape, layers = ALL) {
+        const { memory } = this, found = create(memory, 'found');
+        try {
+            const at = memory.scratch(152);
+            memory.call('world_overlap', this.handle, this.#writeShape(at, shape), layersOf(layers), found);
+            memory.call('found_objects', found, at + 144, at + 148);
+            const [first, count] = memory.words.subarray(at + 144 >> 2, at + 152 >> 2);
+            return Array.from({ length: count }, (_, i) => this.#refAt(first + 16 * i));
+        } finally {
+            memory.module._crofton_found_destroy(found);
+        }
+    }
+    /** Returns the object nearest to a shape, `{ object, user, distance, onShape, onObject }`, no farther than `maxDistance`; or null. */
+    closest(shape, maxDistance = Infinity, layers = ALL) {
+        const { memory } = this, at = memory.scratch(224), answer = at + 144;
+        memory.words[answer >> 2] = 80;
+        memory.call('world_closest', this.handle, this.#writeShape(at, shape), maxDistance, layersOf(layers), answer);
+        const { doubles, words } = memory, first = answer + 24 >> 3;
+        if (words[answer + 4 >> 2] === ALL) return null;
+        return { object: this.#handleAt(answer + 4, 'object'), user: this.#userAt(answer + 16), distance: doubles[first],
+            onShape: [...doubles.subarray(first + 1, first + 4)], onObject: [...doubles.subarray(first + 4, first + 7)] };
+    }
+    #writeShape(at, { box, sphere, capsule } = {}) {
+        if ([box, sphere, capsule].filter(Boolean).length !== 1) throw failure(1, 'a query has one of box, sphere and capsule');
+        const { words, doubles } = this.memory, { begin, end = begin, radius } = capsule ?? { begin: sphere?.center, radius: sphere?.radius };
+        words[at >> 2] = box ? 0 : sphere ? 1 : 2;
+        if (box) this.#writeBox(at + 8, box);
+        else doubles.set([...numbersOf(begin, 3, sphere ? 'center' : 'begin'), ...numbersOf(end, 3, 'end'), radius], at + 80 >> 3);
+        return at;
+    }
+    #refAt(at) { return { object: this.#handleAt(at, 'object'), user: this.#userAt(at + 8) }; }
+    #userAt(at) { return this.memory.words[at >> 2] + 2 ** 32 * this.memory.words[(at >> 2) + 1]; }
 
     // Objects and meshes each count from 0; `kind` tells a mesh from the object of the same number.
     #give(handle, kind, at) {
@@ -302,11 +366,15 @@ export class World extends Owned {
         this.memory.doubles.set([0, 1, 2, 3].flatMap(column), at >> 3);
     }
     #writeBound(at, box, sphere) {
-        const { words, doubles, floats } = this.memory;
+        const { words, doubles } = this.memory;
         words[at >> 2] = box ? 1 : 3;
         if (sphere) return doubles.set([...numbersOf(sphere.center, 3, 'center'), sphere.radius], at + 128 >> 3);
-        doubles.set(numbersOf(box.center, 3, 'center'), at + 8 >> 3);
-        floats.set(numbersOf(box.axes ?? [1, 0, 0, 0, 1, 0, 0, 0, 1], 9, 'axes'), at + 32 >> 2);
-        floats.set(numbersOf(box.halfExtents, 3, 'halfExtents').map(roundedUp), at + 8 + BOX - 12 >> 2);
+        this.#writeBox(at + 8, box);
+    }
+    #writeBox(at, { center, axes = [1, 0, 0, 0, 1, 0, 0, 0, 1], halfExtents }) {
+        const { doubles, floats } = this.memory;
+        doubles.set(numbersOf(center, 3, 'center'), at >> 3);
+        floats.set(numbersOf(axes, 9, 'axes'), at + 24 >> 2);
+        floats.set(numbersOf(halfExtents, 3, 'halfExtents').map(roundedUp), at + BOX - 12 >> 2);
     }
 }

@@ -345,6 +345,46 @@ for (const build of BUILDS) {
         bad({ camera, limits: { eye: [0, 0] } }, 'invalid argument');
         bad({ camera, limits: { eye: [0, 0, 0], hysteresis: 0.5 } }, 'out of range');
     });
+    here('what overlaps a shape and what is nearest to it, with layers and user numbers', () => {
+        const world = new crofton.World(), visible = new crofton.ViewResult();
+        const cube = world.addMesh(CUBE.positions, CUBE.indices);
+        const box = world.add({ box: { center: [0, 0, 0], halfExtents: [1, 1, 1] }, user: 2 ** 40 + 7 });
+        const sphere = world.add({ sphere: { center: [5, 0, 0], radius: 1 }, layers: 2 });
+        const mesh = world.add({ mesh: cube, transform: translation(0, 10, 0) });
+        world.update();
+        const met = (...query) => world.overlap(...query).map(({ object }) => object);
+        assert.deepEqual(world.overlap({ sphere: { center: [2, 0, 0], radius: 1 } }), [{ object: box, user: 2 ** 40 + 7 }]);  // they touch
+        assert.deepEqual(met({ sphere: { center: [2.001, 0, 0], radius: 1 } }), []);
+        assert.deepEqual(met({ capsule: { begin: [0, 0, 0], end: [5, 0, 0], radius: 0 } }), [box, sphere]);
+        assert.deepEqual(met({ capsule: { begin: [0, 0, 0], end: [5, 0, 0], radius: 0 } }, 2), [box, sphere]);
+        assert.deepEqual(met({ capsule: { begin: [0, 0, 0], end: [5, 0, 0], radius: 0 } }, 1), [box]);
+        assert.deepEqual(met({ box: { center: [0, 10, 0], halfExtents: [9, 2, 9] } }), [mesh]);
+        const near = world.closest({ sphere: { center: [2.5, 0, 0], radius: 0.25 } });
+        assert.deepEqual(near, { object: box, user: 2 ** 40 + 7, distance: 1.25, onShape: [2.25, 0, 0], onObject: [1, 0, 0] });
+        assert.equal(world.closest({ sphere: { center: [2.5, 0, 0], radius: 0.25 } }, 1), null);
+        assert.equal(world.closest({ sphere: { center: [2.5, 0, 0], radius: 0.25 } }, 9, 2).distance, 1.25);
+        assert.equal(world.raycastAny([0, 0, 9], [0, 0, -1]), true);
+        assert.equal(world.raycastAny([0, 0, 9], [0, 0, -1], 7.5), false);
+        world.setUser(box, 3);
+        world.setLayers(box, 4);
+        world.update();
+        assert.deepEqual(world.overlap({ box: { center: [0, 0, 0], halfExtents: [9, 1, 1] } }, 4), [{ object: box, user: 3 }]);
+        assert.throws(() => world.removeMesh(cube), refused('invalid argument'));
+        world.remove(mesh);
+        world.removeMesh(cube);
+        assert.throws(() => world.add({ mesh: cube }), refused('stale handle'));
+        world.update();
+        for (const [ask, status] of [[() => world.overlap({}), 'invalid argument'],
+            [() => world.overlap({ sphere: { center: [0, 0, 0], radius: -1 } }), 'invalid argument'], [() => world.overlap(), 'invalid argument'],
+            [() => world.overlap({ sphere: { center: [0, 0, 0] } }), 'not finite'], [() => world.raycast([0, 0, 0], [0, 0, 1], 1, 'all'), 'invalid argument'],
+            [() => world.overlap({ sphere: { center: [NaN, 0, 0], radius: 1 } }), 'not finite'],
+            [() => world.overlap({ capsule: { begin: [0, 0, 0], radius: 1, end: [0] } }), 'invalid argument'],
+            [() => world.closest({ box: { center: [0, 0], halfExtents: [1, 1, 1] } }), 'invalid argument'],
+            [() => world.closest({ sphere: { center: [0, 0, 0], radius: 1 } }, -1), 'invalid argument'],
+            [() => world.raycastAny([0, 0, 0], [0, 0, 0]), 'degenerate'],
+            [() => world.setUser(box, -1), 'invalid argument'], [() => world.setLayers(box, 'x'), 'invalid argument'], [() => world.setLayers(mesh, 1), 'stale handle']])
+            assert.throws(ask, refused(status));
+    });
     here('a light lists what throws a shadow on what the camera sees', () => {
         const world = new crofton.World(), seen = new crofton.ViewResult(), casters = new crofton.ViewResult();
         const cube = world.addMesh(CUBE.positions, CUBE.indices, { clusters: true });

@@ -224,7 +224,7 @@ void add_bake_command(CommandLine& line) {
     command.option("--map", options->map, "Level of a .wad file");
     command.option("--instances", options->instances, "Approximate number of instances of the town");
     command.option("--seed", options->seed, "Seed of the town").show_default();
-    command.option("--tree", options->tree, "Axes of the tree's inner bounds: aligned, oriented or automatic")
+    command.option("--tree", options->tree, "aligned | oriented | automatic: axes of the tree's inner bounds")
         .show_default();
     command.flag("--no-occluders", options->no_occluders,
                  "Do not search for occluders, which takes a second or more for each mesh of 100,000 triangles");

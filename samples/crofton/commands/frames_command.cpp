@@ -486,15 +486,16 @@ void add_frames_command(CommandLine& line) {
             ".crofton file")
         .show_default();
     command.option("--frames", options->frames, "Number of frames; by default 120, or all of a recorded path");
-    command.option("--camera", options->camera,
-                   "orbit, street, flight, random, or a JSON file of cameras; orbit by default, flight over regions");
+    command.option(
+        "--camera", options->camera,
+        "orbit | street | flight | random, or a JSON file of cameras; orbit by default, flight over regions");
     command.option("--seed", options->seed, "Seed of built-in scenes and of random cameras").show_default();
     command.option("--instances", options->instances, "Number of instances of the town, up to 1000000; 0: about 3000")
         .show_default();
     command.option("--size", options->size, "Size of the picture, WIDTHxHEIGHT").show_default();
-    command.option("--bounds", options->bounds, "sphere, aabb, obb-volume, obb-area, obb-perimeter or obb-frustum")
+    command.option("--bounds", options->bounds, "sphere | aabb | obb-volume | obb-area | obb-perimeter | obb-frustum")
         .show_default();
-    command.option("--cull", options->cull, "none, flat or tree").show_default();
+    command.option("--cull", options->cull, "none | flat | tree").show_default();
     command
         .option("--region-distance", options->region_distance,
                 "Attach regions of a folder within this distance of the camera, and see no farther. By default the "
@@ -531,7 +532,7 @@ void add_frames_command(CommandLine& line) {
             "the camera may see")
         .whole_between(16, 16384)
         .needs(occlude);
-    command.option("--tree", options->tree, "Axes of the tree's inner bounds: aligned, oriented or automatic")
+    command.option("--tree", options->tree, "aligned | oriented | automatic: axes of the tree's inner bounds")
         .show_default();
     command.option("--map", options->map, "Level of a .wad file; the first by default");
     command.option("--threads", options->threads, "Worker threads; 0: one per core")

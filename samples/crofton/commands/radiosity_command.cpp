@@ -354,7 +354,7 @@ void add_radiosity_command(CommandLine& line) {
     command.option("--reference", options->reference, "Compare with this many runs of another seed, patch by patch")
         .whole_between(2, 1'000'000)
         .excludes(shard);
-    command.option("--method", options->method, "local, global, bundles or walls").show_default();
+    command.option("--method", options->method, "local | global | bundles | walls").show_default();
     command.option("--edge", options->edge, "Longest edge of a patch in metres; chosen automatically by default")
         .positive();
     command

@@ -238,7 +238,7 @@ void add_triangulate_command(CommandLine& line) {
     Command command = line.command("triangulate", "Triangulate polygons with holes, or the planar patches of meshes");
     command.footer(kTriangulateExamples);
     command.option("file", options->file, "File to triangulate").required();
-    command.option("--method", options->method, "ear, delaunay or minimum-weight").show_default();
+    command.option("--method", options->method, "ear | delaunay | minimum-weight").show_default();
     command.option("--map", options->map, "Level of a .wad file; all by default");
     const Option work = command
                             .option("--work-limit", options->work,

@@ -91,13 +91,13 @@ void add_view_command(CommandLine& line) {
         .between(viewer::kMinResolution, 1.0)
         .show_default();
     command.option("--size", arguments->size, "Size of the window, WIDTHxHEIGHT").show_default();
-    command.option("--bounds", arguments->bounds, "sphere, aabb, obb-volume, obb-area, obb-perimeter or obb-frustum")
+    command.option("--bounds", arguments->bounds, "sphere | aabb | obb-volume | obb-area | obb-perimeter | obb-frustum")
         .show_default();
-    command.option("--cull", arguments->cull, "none, flat or tree").show_default();
+    command.option("--cull", arguments->cull, "none | flat | tree").show_default();
     command.flag("--occlude", options.settings.method.occlude, "Leave out objects that are hidden behind others");
     command.option("--baked", options.scene.baked,
                    "A baked file of the scene: occluders by 'crofton bake', visible sets by 'crofton pvs'");
-    command.option("--camera", options.camera, "Play a path: orbit, street, flight, random, or a JSON file");
+    command.option("--camera", options.camera, "orbit | street | flight | random, or a JSON file: plays a path");
     command.option("--after", options.frames, "Quit after this many frames");
     command.option("--screenshot", options.screenshot, "Write the last frame as PNG").writable_file();
     command.option("--script", options.script, "JSON file of keys, cameras, switches and screenshots by frame");

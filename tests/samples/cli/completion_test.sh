@@ -44,6 +44,11 @@ expect '--trace' crofton frames town --frames 3 --trac
 expect 'exact fast tight' crofton fit --quality ''
 expect 'tight' crofton fit --quality ti
 expect 'README.md' crofton frames READ
+expect 'town' crofton frames to
+expect 'collide convex cull lines occlude paper pvs' crofton verify ''
+expect 'partner:' crofton fit --criterion part
+expect 'delaunay' crofton triangulate --method de
+expect 'random' crofton frames --camera ra
 expect '' crofton nothing --tr
 # Each command of the help is offered, and each has options.
 for command in $(crofton --help | sed -n '/^Subcommands:/,$s/^  \([a-z]*\) .*/\1/p'); do
@@ -65,5 +70,8 @@ if command -v fish >/dev/null; then
     in_fish '--trace --tree' 'crofton frames --tr'
     in_fish 'exact fast tight' 'crofton fit --quality '
     in_fish README.md 'crofton frames READ'
+    in_fish 'partner:' 'crofton fit --criterion part'
+    in_fish 'collide convex cull lines occlude paper pvs' 'crofton verify '
+    in_fish '--quality' 'crofton fit --qual'
 fi
 exit $failed
