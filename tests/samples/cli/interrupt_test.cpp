@@ -193,12 +193,12 @@ TEST_SUITE("cli/interrupt") {
 
     TEST_CASE("a command that takes longer than two seconds reports its progress on standard error") {
         const Ended ended =
-            end_after({"study", "measure", "room", "--lines", "1000000000000"}, milliseconds(2600), SIGINT);
+            end_after({"study", "measure", "room", "--lines", "1000000000000"}, milliseconds(3500), SIGINT);
         CHECK(ended.err.find("crofton: measure: 2 s\n") == 0);
         CHECK(ended.out.empty());
         // Where it is known how much there is to do, the time that is left is told as well.
         const Ended frames = end_after({"frames", "room", "--no-draw", "--frames", "1000000", "--json", "-"},
-                                       milliseconds(2600), SIGINT);
+                                       milliseconds(3500), SIGINT);
         const std::size_t told = frames.err.find(" % after 2 s, about ");
         REQUIRE(told != std::string::npos);
         CHECK(frames.err.find(" left\n", told) != std::string::npos);
