@@ -3,6 +3,7 @@
 #include <crofton/depth/depth_culler.hpp>
 
 #include <doctest/doctest.h>
+#include <hwy/targets.h>
 
 #include <cstdlib>
 #include <limits>
@@ -106,7 +107,8 @@ TEST_CASE("what is dropped is proved to own no sample, however a renderer rounds
 
 // Ten views of a kind: by renderers that round in three ways, and by proofs. A renderer's vertices on the near plane
 // may lie many pixels off, where proofs are not tight enough: kinds that reach it go without.
-void try_hostile(Hostile kind, bool with_proofs) {
+// Returns how many triangles are listed.
+std::uint64_t try_hostile(Hostile kind, bool with_proofs) {
     constexpr std::uint64_t kViews = 10;
     Proofs proofs;
     Checked sum;
@@ -130,6 +132,7 @@ void try_hostile(Hostile kind, bool with_proofs) {
     CHECK((proofs.pixels > 0) == with_proofs);
     MESSAGE("listed ", sum.listed, ", owners ", sum.owners, ", all ", sum.total);
     if (with_proofs) report(proofs);
+    return sum.listed;
 }
 
 TEST_CASE("walls one upon the other, or nearly, lose nothing") {
@@ -161,6 +164,16 @@ TEST_CASE("an eye inside of things loses nothing") {
 }
 TEST_CASE("steep triangles that reach through a wall are listed") {
     try_hostile(Hostile::poking, true);
+}
+TEST_CASE("needles through the near plane lose nothing, and every instruction set finds the same") {
+    std::vector<std::uint64_t> sums;
+    for (std::int64_t rest = hwy::SupportedTargets(); rest != 0; rest &= rest - 1) {
+        CAPTURE(hwy::TargetName(rest & -rest));
+        hwy::SetSupportedTargetsForTest(rest & -rest);
+        sums.push_back(try_hostile(Hostile::needles, false));
+        hwy::SetSupportedTargetsForTest(0);
+        CHECK(sums.back() == sums.front());
+    }
 }
 
 TEST_CASE("there is no proof for what owns a sample") {

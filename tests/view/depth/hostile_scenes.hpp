@@ -20,6 +20,7 @@ enum class Hostile {
     through_near,  // the near plane cuts most of it
     inside,        // of a ball and of a box
     poking,        // steep triangles that reach through a wall, or nearly
+    needles,       // quads of down to a hundred-thousandth of their length, through the near plane, over a vast ground
     count
 };
 
@@ -89,6 +90,21 @@ inline TriangleMesh with_degenerate(oracle::NearMisses& random) {
         mesh.positions.push_back(0.5f * (mesh.positions[a] + mesh.positions[b]));
         const std::uint32_t more[3][3] = {{a, b, b}, {a, middle, b}, {b, a, b}};
         for (const std::uint32_t v : more[random.index(3)]) mesh.indices.push_back(v);
+    }
+    return mesh;
+}
+
+// Long thin quads around the origin, each of two triangles.
+inline TriangleMesh needles(oracle::NearMisses& random) {
+    TriangleMesh mesh;
+    for (int i = 0; i < 60; ++i) {
+        const glm::dvec3 from(random.number(-1, 1), random.number(-1, 1), random.number(-1, 1));
+        const glm::dvec3 along = std::exp(random.number(-3.0, 2.0)) * random.direction();
+        const glm::dvec3 across = std::exp(random.number(-12.0, -3.0)) * random.direction();
+        const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+        for (const glm::dvec3& p : {from, from + along, from + along + across, from + across})
+            mesh.positions.push_back(glm::vec3(p));
+        for (const std::uint32_t v : {0, 1, 2, 0, 2, 3}) mesh.indices.push_back(first + v);
     }
     return mesh;
 }
@@ -206,6 +222,18 @@ inline Scene hostile_scene(Hostile kind, oracle::NearMisses& random) {
                 place(scene, random.index(2),
                       {random.number(-0.2, 0.2), random.number(-0.2, 0.2), random.number(-0.2, 0.2)},
                       glm::dvec3(random.number(1.0, 9.0)), random, 3.0);
+            break;
+        case Hostile::needles:
+            for (int i = 0; i < 3; ++i) cut(needles(random));
+            cut(wall(1 + random.index(2), 1 + random.index(2), 0.0, random));
+            scene.objects.push_back(
+                {&scene.meshes[3], placed({0.0, -0.6, 0.0}, glm::dvec3(1e5), {1, 0, 0}, -1.5707963267948966)});
+            for (int i = 0; i < 12; ++i)
+                place(scene, random.index(3), {random.number(-2, 2), random.number(-0.5, 0.5), random.number(-4, 1)},
+                      glm::dvec3(std::exp(random.number(-1.0, 1.0))), random, 3.0);
+            for (int i = 0; i < 12; ++i)
+                place(scene, 3, {random.number(-6, 6), random.number(-0.5, 2), random.number(-9, 1)},
+                      glm::dvec3(std::exp(random.number(-2.0, 1.0))), random, 3.0);
             break;
         default:
             cut(wall(1 + random.index(3), 1 + random.index(3), 0.0, random));
