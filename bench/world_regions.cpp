@@ -96,38 +96,38 @@ void rays(const Town& town, int frames) {
                 times.world / 1000.0, times.world / times.by_hand);
 }
 
-// A region comes and one goes every third frame: 20 a second of 60 frames. The least times of each frame in some passes
-// of the same flight: what is left of the longest is not the machine's.
+// A region comes and one goes every third frame: 20 a second of 60 frames. By the clock, of the pass whose slowest
+// frame is the fastest: in others the machine did something else.
 void flight(Town& town, int frames) {
     constexpr int kPasses = 7;
     const cull::View view = view_of_share(town.boxes, 0.01);
     ViewResult seen;
-    std::vector<double> times(static_cast<std::size_t>(frames) * 10, 1e30);
+    std::vector<double> times(static_cast<std::size_t>(frames) * 10), best;
     for (int pass = 0; pass < kPasses; ++pass) {
         std::size_t next = 0;
         for (std::size_t frame = 0; frame < times.size(); ++frame) {
-            const double passed = microseconds([&] {
-                if (frame % 3 == 0) {
-                    RegionHandle& handle = town.handles[next];
-                    require_ok(town.with.detach(handle).has_value(), "detaching");
-                    handle = town.with.attach(town.regions[next], town.origins[next]).value();
-                    next = (next + 37) % town.handles.size();
-                }
-                require_ok(town.with.update().has_value(), "an update");
-                (void)town.with.view({.volume = view.frustum}, seen);
-            });
-            times[frame] = std::min(times[frame], passed);
+            const auto start = std::chrono::steady_clock::now();
+            if (frame % 3 == 0) {
+                RegionHandle& handle = town.handles[next];
+                require_ok(town.with.detach(handle).has_value(), "detaching");
+                handle = town.with.attach(town.regions[next], town.origins[next]).value();
+                next = (next + 37) % town.handles.size();
+            }
+            require_ok(town.with.update().has_value(), "an update");
+            (void)town.with.view({.volume = view.frustum}, seen);
+            times[frame] = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
         }
+        if (best.empty() || std::ranges::max(times) < std::ranges::max(best)) best = times;
     }
     double calm = 0.0, streaming = 0.0;
-    for (std::size_t frame = 0; frame < times.size(); ++frame) (frame % 3 == 0 ? streaming : calm) += times[frame];
-    const double mean = (calm + streaming) / static_cast<double>(times.size());
-    std::sort(times.begin(), times.end());
+    for (std::size_t frame = 0; frame < best.size(); ++frame) (frame % 3 == 0 ? streaming : calm) += best[frame];
+    const double mean = (calm + streaming) / static_cast<double>(best.size());
+    std::sort(best.begin(), best.end());
     std::printf(
         "a flight of %zu frames: mean %.1f µs, in every third, in which a region comes and one goes, %.1f µs; the "
         "slowest hundredth %.1f µs, the slowest %.1f µs: %.1f µs above the mean\n",
-        times.size(), mean, 3.0 * streaming / static_cast<double>(times.size()), times[times.size() * 99 / 100],
-        times.back(), times.back() - mean);
+        best.size(), mean, 3.0 * streaming / static_cast<double>(best.size()), best[best.size() * 99 / 100],
+        best.back(), best.back() - mean);
 }
 
 // Compares a World after 100,000 attachments with a fresh World that holds the same regions.

@@ -8,6 +8,7 @@
 #include <mutex>
 
 #include "assets/scene_source.hpp"
+#include "commands.hpp"
 #include "for_each_region.hpp"
 #include "interrupt.hpp"
 #include "pipeline/baked_parts.hpp"

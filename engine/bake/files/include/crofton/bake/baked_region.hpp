@@ -14,8 +14,8 @@ struct BakedRegionOptions {
     bool triangles = true;
     std::uint32_t collides_with = ~0u;  // of all objects, as RegionObject
     RegionOptions region = {};          // `meshes` and `built` are not read
-    // Objects hide others in views with OcclusionOptions. False: their occluders are not prepared, which takes a fifth
-    // of the time; a picture's views (ViewRequest::picture) need none.
+    // Objects hide others in views with OcclusionOptions. False: their occluders are not prepared, which takes half of
+    // the time; a picture's views (ViewRequest::picture) need none.
     bool occluders = true;
 };
 
