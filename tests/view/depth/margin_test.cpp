@@ -192,7 +192,7 @@ TEST_SUITE("depth/margins") {
         });
     }
 
-    TEST_CASE("what lies beside the picture, but may be rounded into it, is listed") {
+    TEST_CASE("a triangle outside the picture that rounding may move into it is listed") {
         try_aimed(1500, 8, 40, [](Aim& aim) {
             aim.most_offset = 4e6;
             aim.add(aim.meshes.beside(30), aim.random.index(2) == 0 ? 1 : aim.some_size());

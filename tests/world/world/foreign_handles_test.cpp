@@ -78,7 +78,7 @@ TEST_SUITE("world/foreign_handles") {
         CHECK(b.world.statistics().boxes_changed == 0);
     }
 
-    TEST_CASE("of a list with a handle of another World the others are obeyed, and its place is told") {
+    TEST_CASE("a list with a handle of another World: the other handles are obeyed, and the error names its place") {
         Furnished a, b;
         const ObjectHandle second = b.world.add({.bound = box_at({2.0, 0.0, -9.0})}).value();
         REQUIRE(b.world.update().has_value());
