@@ -124,7 +124,7 @@ TEST_SUITE("world/foreign_handles") {
         }
     }
 
-    TEST_CASE("of a thousand Worlds whose objects came and went, none accepts another's handles") {
+    TEST_CASE("a thousand Worlds whose objects came and went accept no handle of another") {
         std::set<std::pair<std::uint32_t, std::uint32_t>> given;
         for (int w = 0; w < 1000; ++w) {
             World world({.pairs = false});
