@@ -107,17 +107,9 @@ void cast_shadows(assets::SceneSource& source, const pipeline::SceneClusters& cl
     for (const double share : {1.0, 0.125}) {
         std::vector<Camera> suns;
         for (const Camera& camera : cameras) {
-            Camera sun;
-            sun.projection = Projection::orthographic;
-            sun.forward = glm::normalize(glm::dvec3(0.5, -1.0, 0.3));
-            sun.height = 2.0 * share * reach;
-            sun.aspect = 1.0;
             const glm::dvec3 at =
                 share == 1.0 ? middle : camera.position + share * reach * glm::normalize(camera.forward);
-            sun.position = at - 2.0 * reach * sun.forward;
-            sun.near_distance = 0.01 * reach;
-            sun.far_distance = 4.0 * reach;
-            suns.push_back(sun);
+            suns.push_back(pipeline::sun_over(at, share * reach, reach));
         }
         const auto casters = objects_along(source, clusters, suns);
         depth::DepthCuller culler, alone, with_receivers;

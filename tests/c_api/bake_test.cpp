@@ -89,7 +89,7 @@ TEST_SUITE("capi/bake") {
         CHECK(crofton_baked_scene_destroy(nullptr) == CROFTON_BAD_HANDLE);
     }
 
-    TEST_CASE("clusters of a baked mesh are those of the mesh cut anew, and outlive the scene") {
+    TEST_CASE("a baked mesh has the clusters of a freshly cut one, and they outlive the scene") {
         const Scene scene = row(3);
         const TemporaryFile file;
         REQUIRE(crofton_scene_bake(scene.get(), file.path.c_str(), nullptr) == CROFTON_OK);

@@ -296,7 +296,7 @@ TEST_SUITE("capi/world_picture") {
         CHECK(info_of(result).triangles_listed == 0);
     }
 
-    TEST_CASE("what does not hide is drawn through, and what is hidden comes back") {
+    TEST_CASE("objects behind something that hides nothing are drawn, and hidden objects come back") {
         Walls s;
         for (const int i : {0, 1}) REQUIRE(world_set_occludes(s.world.get(), s.objects[i], 0) == CROFTON_OK);
         update(s.world);

@@ -112,7 +112,7 @@ TriangleMesh bumpy(std::uint32_t n) {
 }  // namespace
 
 TEST_SUITE("threads/const_queries") {
-    TEST_CASE("a tree that has been changed answers for views, shapes and rays, and is stored") {
+    TEST_CASE("a changed tree answers views, shapes and rays, and can be stored") {
         oracle::Crowd crowd = oracle::random_crowd(3000, 0.0, 5);
         auto tree = *boxtree::BoxTree::build(crowd.boxes, crowd.layers);
         for (boxtree::ItemId i = 0; i < 500; ++i) REQUIRE(tree.move(i, box_of(static_cast<int>(i))).has_value());
@@ -140,7 +140,7 @@ TEST_SUITE("threads/const_queries") {
         });
     }
 
-    TEST_CASE("packed lists of boxes and of what moves") {
+    TEST_CASE("packed lists of boxes, and of moving boxes") {
         const oracle::Crowd crowd = oracle::random_crowd(2000, 0.0, 6);
         cull::BoxSet set;
         set.assign(crowd.boxes);

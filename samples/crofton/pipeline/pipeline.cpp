@@ -25,21 +25,19 @@ double microseconds_since(Clock::time_point start) {
     return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
 }
 
-// Orthographic, around all of the box.
-Camera sun_over(const Aabb& box) {
-    const double reach = glm::length(box.half_extents());
+}  // namespace
+
+Camera sun_over(const glm::dvec3& center, double half_width, double reach) {
     Camera sun;
     sun.projection = Projection::orthographic;
     sun.forward = glm::normalize(glm::dvec3(0.5, -1.0, 0.3));
-    sun.height = 2.0 * reach;
+    sun.height = 2.0 * half_width;
     sun.aspect = 1.0;
-    sun.position = box.center() - 2.0 * reach * sun.forward;
+    sun.position = center - 2.0 * reach * sun.forward;
     sun.near_distance = 0.01 * reach;
     sun.far_distance = 4.0 * reach;
     return sun;
 }
-
-}  // namespace
 
 Result<CullMode> cull_mode_from(const std::string& name) {
     for (const auto& [known, mode] : kModes)
@@ -305,7 +303,11 @@ struct Pipeline::State {
 
     // After find_triangles().
     Result<void> find_casters(ShadowFrame& frame) {
-        if (!sun) sun = sun_over(focus_of(scene));
+        if (!sun) {
+            const Aabb focus = focus_of(scene);
+            const double reach = glm::length(focus.half_extents());
+            sun = sun_over(focus.center(), reach, reach);
+        }
         const auto start = Clock::now();
         if (auto seen = world.view({.camera = *sun, .layers = kSeenLayer}, of_sun, executor); !seen) return seen;
         casters.clear(), on_map.clear(), receivers.clear();

@@ -45,6 +45,9 @@ struct PipelineOptions {
     TraceHooks trace = {};
 };
 
+// Returns the camera of a sun's shadow map: an orthographic square around `center`, for casters up to 2 `reach` away.
+[[nodiscard]] Camera sun_over(const glm::dvec3& center, double half_width, double reach);
+
 // The layer of the objects that stand for instances; views ask for it.
 inline constexpr std::uint32_t kSeenLayer = 1;
 

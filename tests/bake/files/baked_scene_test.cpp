@@ -190,7 +190,7 @@ TEST_SUITE("bake/baked_scene") {
         }
     }
 
-    TEST_CASE("a mesh that cannot be cut is baked without clusters, beside others that have them") {
+    TEST_CASE("a mesh that cannot be cut is baked without clusters, and other meshes keep theirs") {
         scene::Scene scene;
         for (const float size : {1.0f, 1e16f, 2.0f}) {
             TriangleMesh mesh;

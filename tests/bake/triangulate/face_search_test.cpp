@@ -49,7 +49,7 @@ mpf_class weight_of(const Polygon& polygon, const std::vector<Segment>& diagonal
 }  // namespace
 
 TEST_SUITE("triangulate/face search") {
-    TEST_CASE("of two triangulations that mirror each other except for one last bit, the lighter is found") {
+    TEST_CASE("two triangulations mirror each other except for one last bit, and the lighter one is found") {
         // Found by search: the sums of doubles differ the wrong way, by over a sixteenth of the bound of their errors.
         std::vector<glm::dvec2> ring = {
             {0x1.06fc7d741cff5p-1, -0x1.e4c75a23462f7p+0}, {0x1.0fc73c775f566p+0, -0x1.a442a6042c8abp+0},

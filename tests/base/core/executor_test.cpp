@@ -25,7 +25,7 @@ namespace {
 }  // namespace
 
 TEST_SUITE("core/executor") {
-    TEST_CASE("a pool of no number of threads has one for each processor, and works") {
+    TEST_CASE("a pool without a number of threads has one for each processor, and works") {
         ThreadPool pool(0);
         CHECK(pool.concurrency() == std::max(1u, std::thread::hardware_concurrency()));
         std::atomic<std::size_t> sum{0};

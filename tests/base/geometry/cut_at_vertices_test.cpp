@@ -50,7 +50,7 @@ TEST_SUITE("geometry/cut_at_vertices") {
         }
     }
 
-    TEST_CASE("triangles without area are left out, and those without vertices on their sides stay") {
+    TEST_CASE("triangles without area are dropped, and triangles without vertices on their sides stay") {
         const std::vector<glm::vec3> points = {{0, 0, 0}, {4, 0, 0}, {2, 3, 0}, {2, 0, 0.5f}};
         const std::vector<CutCorners> triangles = {{0, 1, 2}, {0, 0, 1}, {3, 1, 3}, {1, 3, 2}};
         const auto cut = cut_at_vertices(points, triangles);

@@ -60,7 +60,7 @@ TEST_SUITE("sampling/global_lines") {
     TEST_CASE("lines through the ball by a disc point see every place alike") {
         CHECK(sees_every_place_alike([](Random& r) { return line_through_disc(kSphere, r.point<4>()); }));
     }
-    TEST_CASE("cosine-weighted lines from a box's surface see every place alike, in proportion to the areas") {
+    TEST_CASE("cosine-weighted lines from a box's surface hit every place in proportion to its area") {
         const Aabb box{glm::dvec3(-1.0, -2.0, -0.5), glm::dvec3(3.0, 1.0, 0.5)};
         const double r = 0.3, chance = 4.0 * pi * r * r / (2.0 * (4.0 * 3.0 + 3.0 * 1.0 + 1.0 * 4.0));
         for (const glm::dvec3 place :

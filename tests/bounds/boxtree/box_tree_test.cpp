@@ -86,7 +86,7 @@ TEST_SUITE("boxtree/box_tree") {
 
     // Two clumps of 40,000 boxes each, as large as a 10^4th of the scene: all of a clump share one coarse cell of the
     // curve.
-    TEST_CASE("crowds in clumps make leaves as small as a crowd of one scale") {
+    TEST_CASE("clustered objects give leaves as small as evenly spread objects do") {
         oracle::NearMisses random(8);
         const auto place = [&](double half_width) {
             return glm::dvec3(random.number(-half_width, half_width), random.number(-half_width, half_width),

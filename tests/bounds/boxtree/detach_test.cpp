@@ -56,7 +56,7 @@ TEST_SUITE("boxtree/detach") {
         CHECK(holds_all(tree));
     }
 
-    TEST_CASE("a box that is kept with an item in no leaf is told by boxes(), may be refused, and changes nothing") {
+    TEST_CASE("a box kept for an item in no leaf is returned by boxes(), may be refused, and changes nothing") {
         const oracle::Crowd crowd = oracle::random_crowd(300, 0.0, 2);
         BoxTree tree = *BoxTree::build(crowd.boxes, crowd.layers);
         REQUIRE(tree.detach(7).has_value());

@@ -12,7 +12,7 @@
 using namespace crofton;
 
 TEST_SUITE("fit/point_cloud") {
-    TEST_CASE("of two almost equally far points in different chunks, the farther is the support point") {
+    TEST_CASE("the support point is the farther of two almost equally far points in different chunks") {
         std::mt19937_64 random(50);
         std::uniform_real_distribution<double> number(-1.0, 1.0);
         const auto vector = [&] { return glm::dvec3(number(random), number(random), number(random)); };

@@ -318,7 +318,7 @@ TEST_SUITE("assets/gltf_patches") {
         }
     }
 
-    TEST_CASE("a patch that overlaps itself stays, with its reason") {
+    TEST_CASE("a patch that overlaps itself is kept as it is, with the reason") {
         std::vector<float> xyz(3, 0.0f);
         std::vector<std::uint8_t> indices;
         for (int i = 0; i <= 12; ++i) {

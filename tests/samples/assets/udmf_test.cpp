@@ -82,7 +82,7 @@ TEST_SUITE("assets/udmf") {
         check_same_level(*hexen, *load_level(wad.file()));
     }
 
-    TEST_CASE("levels of both kinds in one file are told apart, and text between levels is none") {
+    TEST_CASE("levels of both kinds in one file are distinguished, and text between levels is not a level") {
         Wad wad;
         const std::string text = room_text();
         const std::string file = wad_file({{"MAP02", ""},

@@ -142,7 +142,7 @@ TEST_SUITE("viewer/occlusion") {
         CHECK(picture(found, "flat.png")["occlusion"]["hidden"] == picture(found, "a.png")["occlusion"]["hidden"]);
         CHECK(number(picture(found, "flat.png"), "colliding_pairs") == 0);
     }
-    TEST_CASE("a file that was baked of another scene, has nothing to show, or is missing is refused by name") {
+    TEST_CASE("a file that was baked from another scene, shows nothing, or is missing is refused by name") {
         const std::string file = scratch().file("other.crofton"), bare = scratch().file("bare.crofton"),
                           sets = scratch().file("sets.crofton");
         REQUIRE(run_cli("pvs town --instances 400 --seed 2 --cells 2x1x2 --epsilon 0.1 --out " + sets).status == 0);

@@ -156,7 +156,7 @@ TEST_SUITE("viewer/shape_colors") {
 }
 
 TEST_SUITE("viewer/eye") {
-    TEST_CASE("who stands on a floor walks at 1.4 m/s, a smaller eye slower in proportion") {
+    TEST_CASE("a camera on a floor walks at 1.4 m/s, and a smaller eye proportionally slower") {
         CameraController eye;
         eye.stand({0, 1.7, 0}, {0, 1.7, -5}, 1.7);
         CHECK(eye.speed == doctest::Approx(1.4));

@@ -5,7 +5,7 @@
 using namespace crofton::test;
 
 TEST_SUITE("viewer/regions") {
-    TEST_CASE("regions come and go with the eye, are told apart by colour, and a damaged one is named") {
+    TEST_CASE("regions come and go with the eye, differ in colour, and a damaged one is named") {
         const std::string folder = scratch().file("regions");
         REQUIRE(run_cli("bake town --instances 3000 --no-occluders --regions 5x4 --folder " + folder).status == 0);
         const auto eye = [](int frame, double x) {

@@ -341,7 +341,7 @@ TEST_SUITE("collide/broadphase") {
         }
     }
 
-    TEST_CASE("frame after frame of moving boxes: all pairs, in order, and who began, stayed and ended") {
+    TEST_CASE("frame after frame of moving boxes: all pairs in order, and which began, stayed and ended") {
         std::mt19937_64 random(4);
         auto boxes = random_boxes(random, 600, 6.0);
         Broadphase broadphase;

@@ -129,7 +129,7 @@ TEST_SUITE("convex/beside") {
     }
 
     // A second part that touches nothing makes the first a shape of parts, which has all contacts beside it found.
-    TEST_CASE("a contact that nothing flush covers is the same where all contacts beside it are found") {
+    TEST_CASE("a contact that no flush neighbour covers stays the same if all contacts around it are computed") {
         RandomShapes random(4902);
         int asked = 0;
         Manifolds as_one, as_parts;

@@ -326,7 +326,8 @@ TEST_SUITE("convex/surface_contact") {
         }
     }
 
-    TEST_CASE("front sides alone: what has sunk in is pushed up, what is below is left alone, both sides push down") {
+    TEST_CASE(
+        "front sides only: a shape that has sunk in is pushed up, one below is left alone, both sides push down") {
         RandomShapes random(5);
         const Surface s = ground(random, 16, 0.5, [](double, double) { return 0.0; });
         const Shape box = Shape::box({0.5f, 0.5f, 0.5f}).value(), sphere = Shape::sphere(0.5f).value();
@@ -384,7 +385,8 @@ TEST_SUITE("convex/surface_contact") {
     }
 
     // Ground of slopes from 1e-4, where the rule takes edges for flat, to 5.
-    TEST_CASE("a ball on many triangles touches those that the rule for inner edges leaves, told one by one") {
+    TEST_CASE(
+        "a sphere on many triangles has contacts with exactly the triangles that the rule for inner edges keeps") {
         RandomShapes random(21);
         Manifolds found;
         int asked = 0, contacts = 0, over_edges = 0, all_listed = 0;

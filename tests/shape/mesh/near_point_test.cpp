@@ -148,7 +148,7 @@ void check_nearest(const TriangleMesh& mesh, const MeshTree& tree, const glm::dv
 }  // namespace
 
 TEST_SUITE("mesh/near_point") {
-    TEST_CASE("of triangles that are exactly as near to a point the first is named, however they lie in the tree") {
+    TEST_CASE("if several triangles are exactly as near to a point, the first is named, however they lie in the tree") {
         std::mt19937_64 random(4601);
         int ties = 0;
         for (int trial = 0; trial < 60; ++trial) {

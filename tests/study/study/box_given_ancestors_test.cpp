@@ -79,7 +79,7 @@ TEST_SUITE("study/box_given_ancestors") {
         }
     }
 
-    TEST_CASE("no orientation of a cell is below the cell's bound, which comes near to the least of them") {
+    TEST_CASE("no orientation in a cell has less than the cell's bound, which comes close to the least of them") {
         int close = 0, cells = 0;
         for (std::uint64_t seed = 0; seed < 12; ++seed) {
             const auto points = random_points(seed, 12, {1.0, 0.5, 0.4});

@@ -205,7 +205,7 @@ TEST_SUITE("cull/rounding edges") {
         }
     }
 
-    TEST_CASE("planes twice as long as unit vectors, along the axes, in a tree") {
+    TEST_CASE("a tree answers views whose planes along the axes have normals of length two") {
         oracle::NearMisses random(45);
         std::vector<Obb> boxes(2000);
         for (Obb& box : boxes) {

@@ -88,7 +88,7 @@ void report(const Proofs& p) {
             p.of[4], "; pixels ", p.pixels, ", unproved ", p.pixels_unproved);
 }
 
-TEST_CASE("what is dropped is proved to own no sample, however a renderer rounds") {
+TEST_CASE("dropped triangles are proved to own no sample, however a renderer rounds") {
     Proofs proofs;
     depth::DepthCuller culler;
     for (std::uint64_t seed = 1; proofs[DepthCertificate::Proof::hidden] < wanted_proofs(); ++seed) {

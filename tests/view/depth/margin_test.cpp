@@ -59,7 +59,7 @@ void try_aimed(std::uint64_t count, std::uint32_t least, std::uint32_t most, con
 }
 
 TEST_SUITE("depth/margins") {
-    TEST_CASE("what barely reaches through a wall is listed") {
+    TEST_CASE("a triangle that barely reaches through a wall is listed") {
         const auto build = [](Aim& aim) {
             const double z = aim.random.number(0.1, 0.9);
             aim.add(aim.meshes.wall(z, 0.0), 0);
@@ -72,7 +72,7 @@ TEST_SUITE("depth/margins") {
         });
     }
 
-    TEST_CASE("what barely touches a sample is listed") {
+    TEST_CASE("a triangle that barely covers a sample is listed") {
         const auto build = [](Aim& aim) { aim.add(aim.meshes.specks(0.5, 60), aim.some_size()); };
         try_aimed(1000, 8, 40, build);
         try_aimed(1000, 8, 40, [&](Aim& aim) {
@@ -192,14 +192,14 @@ TEST_SUITE("depth/margins") {
         });
     }
 
-    TEST_CASE("what lies beside the picture, but may be rounded into it, is listed") {
+    TEST_CASE("a triangle outside the picture that rounding may move into it is listed") {
         try_aimed(1500, 8, 40, [](Aim& aim) {
             aim.most_offset = 4e6;
             aim.add(aim.meshes.beside(30), aim.random.index(2) == 0 ? 1 : aim.some_size());
         });
     }
 
-    TEST_CASE("what owns any sample of a multisampled pixel is listed") {
+    TEST_CASE("a triangle that owns any sample of a multisampled pixel is listed") {
         for (const std::uint32_t samples : {2u, 4u, 8u}) {
             CAPTURE(samples);
             const auto build = [&](Aim& aim) {

@@ -182,7 +182,7 @@ TEST_SUITE("depth/shadow") {
         }
     }
 
-    TEST_CASE("of a street and its roofs, a sun's map needs what throws a shadow into the street") {
+    TEST_CASE("a sun's map of a street and its roofs lists what throws a shadow into the street") {
         // Two rows of houses; behind each, more houses, whose shadows fall away from the street or on roofs.
         Scene scene;
         scene.meshes.emplace_back(cube_mesh());

@@ -83,7 +83,7 @@ class RayView {
     World world_;
 };
 
-TEST_CASE("what rays through sample centres meet first is listed") {
+TEST_CASE("the triangles that rays through sample centres hit first are listed") {
     std::uint64_t rays = 0, hits = 0, beside = 0, lost = 0;
     depth::DepthCuller culler;
     for (std::uint64_t seed = 1; rays < wanted_rays(); ++seed) {

@@ -78,7 +78,7 @@ TEST_SUITE("world/foreign_handles") {
         CHECK(b.world.statistics().boxes_changed == 0);
     }
 
-    TEST_CASE("of a list with a handle of another World the others are obeyed, and its place is told") {
+    TEST_CASE("a list with a handle of another World: the other handles are obeyed, and the error names its place") {
         Furnished a, b;
         const ObjectHandle second = b.world.add({.bound = box_at({2.0, 0.0, -9.0})}).value();
         REQUIRE(b.world.update().has_value());
@@ -124,7 +124,7 @@ TEST_SUITE("world/foreign_handles") {
         }
     }
 
-    TEST_CASE("of a thousand Worlds whose objects came and went, none accepts another's handles") {
+    TEST_CASE("a thousand Worlds whose objects came and went accept no handle of another") {
         std::set<std::pair<std::uint32_t, std::uint32_t>> given;
         for (int w = 0; w < 1000; ++w) {
             World world({.pairs = false});

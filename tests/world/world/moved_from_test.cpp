@@ -101,7 +101,7 @@ TEST_SUITE("world/moved_from") {
         CHECK(visible.verdicts().empty());
     }
 
-    TEST_CASE("lists of boxes that have been moved from are empty, and see nothing") {
+    TEST_CASE("lists of boxes that were moved from are empty, and views of them see nothing") {
         const Obb boxes[2] = {box_at({0, 0, -5}, 1.0f), box_at({3, 0, -5}, 1.0f)};
         auto tree = *boxtree::BoxTree::build(boxes);
         const boxtree::ItemId items[2] = {0, 1};
@@ -124,7 +124,7 @@ TEST_SUITE("world/moved_from") {
         CHECK(packed.boxes().empty());
     }
 
-    TEST_CASE("receivers of shadows that have been moved from want no caster") {
+    TEST_CASE("shadow receivers that were moved from need no caster") {
         const Obb receivers[1] = {box_at({0, 0, -5}, 1.0f)};
         cull::CasterFilter set;
         REQUIRE(set.set_sun(*frustum_of(Camera{}), receivers, {0, 1, 0}).has_value());

@@ -117,7 +117,7 @@ TEST_SUITE("world/movers") {
         CHECK(bad_ones > 3);
     }
 
-    TEST_CASE("of several boxes for one mover before an update the last counts, read from the caller's structs") {
+    TEST_CASE("if a mover gets several boxes before an update, the last counts, read from the caller's structs") {
         struct Enemy {
             std::uint32_t health = 3;
             ObjectHandle object;

@@ -232,7 +232,7 @@ TEST_SUITE("world/occlusion") {
                   .code != ErrorCode::out_of_memory);
     }
 
-    TEST_CASE("what hides an object is told until an update changes something") {
+    TEST_CASE("hidden_by() answers until an update changes something") {
         BehindAWall s;
         REQUIRE(s.hides());
         Vector<OccluderRef> occluders;

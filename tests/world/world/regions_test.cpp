@@ -730,7 +730,7 @@ TEST_SUITE("world/regions") {
         CHECK(world.contacts().size() == 10);  // which have ended
     }
 
-    TEST_CASE("what is detached is met by no ray or probe at once, and is in views until the next update") {
+    TEST_CASE("no ray or probe hits a detached region, and views show it until the next update") {
         World world({.pairs = false});
         const std::vector<RegionObject> objects{{.bound = box_at(glm::dvec3(0.0)), .user = 5}};
         const Region region = Region::prepare(objects).value();

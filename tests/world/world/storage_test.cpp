@@ -271,7 +271,7 @@ TEST_SUITE("world/storage") {
         CHECK(world.pairs().size() == 3);
     }
 
-    TEST_CASE("boxes that are set many at once cover the shapes of those that have some, whoever else moves") {
+    TEST_CASE("boxes that are set many at once cover their objects' shapes, whatever else moves") {
         World at_once({.pairs = false}), one_by_one({.pairs = false});
         NearMisses random(63);
         std::vector<ObjectHandle> objects, twins;

@@ -181,7 +181,7 @@ class BakedScene {
 // When a file is flushed to the disk.
 //
 // now: before it takes its place, which waits for the disk. later: by flush_files(), which you call once for many
-// files. Until then a power cut may leave a file empty or cut; whoever reads .crofton files finds out by their sums.
+// files. Until then a power cut may leave a file empty or cut; reading a .crofton file detects this by its checksums.
 enum class Flush : std::uint8_t { now, later };
 
 // Writes a file atomically: writes `bytes` to PATH.partial, flushes them to the disk, renames that file to PATH, and

@@ -29,7 +29,7 @@ struct ClusterOptions {
     std::uint32_t max_triangles = 0;
 };
 
-// What DepthCuller reads of a mesh: its clusters, and which triangles meet along which edges. Copies the positions; the
+// A mesh as DepthCuller reads it: its clusters, and the triangles that meet along each edge. Copies the positions; the
 // caller's index buffer is permuted by triangle_order(), so that each cluster is one range of it.
 class ClusteredMesh {
   public:
@@ -45,12 +45,12 @@ class ClusteredMesh {
                                                    const ClusterOptions& options = {});
 
     // Triangle k of the permuted mesh is triangle triangle_order()[k] of the mesh that was given.
-    [[nodiscard]] std::span<const std::uint32_t> triangle_order() const { return order_; }
+    [[nodiscard]] std::span<const std::uint32_t> triangle_order() const { return {order_.data(), order_.size()}; }
     // Writes the triangles of `indices`, three numbers each, in that order to `to`. Requires as many of both as were
     // cut.
     void permute(std::span<const std::uint32_t> indices, std::span<std::uint32_t> to) const;
 
-    [[nodiscard]] std::span<const Cluster> clusters() const { return clusters_; }
+    [[nodiscard]] std::span<const Cluster> clusters() const { return {clusters_.data(), clusters_.size()}; }
     // Contains all clusters: an aligned box.
     [[nodiscard]] const Cluster& bound() const { return bound_; }
     // Differs for each call of cut() and deserialise() of the process; copies share it. 0: the mesh is empty.
@@ -58,11 +58,11 @@ class ClusteredMesh {
     // Bytes that this object holds.
     [[nodiscard]] std::size_t memory() const;
 
-    // Returns bytes from which deserialise() makes an equal object without cutting anew, on machines of the same byte
+    // Returns bytes from which deserialise() makes an equal object without cutting again, on machines of the same byte
     // order; their number is a multiple of 4.
     [[nodiscard]] Vector<std::byte> serialise() const;
-    // Errors: bytes that are cut off, or whose numbers are out of range (parse; item = cluster). Whoever keeps the
-    // bytes must know that they are of this mesh and undamaged: boxes are not compared with the triangles.
+    // Errors: bytes that are cut off, or whose numbers are out of range (parse; item = cluster). Make sure
+    // that the bytes belong to this mesh and are undamaged: boxes are not compared with the triangles.
     [[nodiscard]] static Result<ClusteredMesh> deserialise(std::span<const std::byte> bytes);
 
     // A cluster, laid out for DepthCuller.
@@ -76,7 +76,7 @@ class ClusteredMesh {
     // Eight triangles of a patch; those beyond its last have three equal corners.
     struct Block {
         std::uint8_t corners[3][kLanes];  // vertices of the patch
-        // What lies across the edge from corner k to k + 1: 4 · triangle of the patch + its edge, or kNone.
+        // The triangle across the edge from corner k to k + 1: 4 · triangle of the patch + its edge, or kNone.
         std::uint8_t neighbors[3][kLanes];
     };
     static constexpr std::uint8_t kNone = 0xff;
@@ -86,7 +86,13 @@ class ClusteredMesh {
         std::span<const Block> blocks;
         glm::vec3 largest;  // absolute coordinates
     };
-    [[nodiscard]] Layout layout() const { return {patches_, coordinates_, blocks_, largest_}; }
+    [[nodiscard]] Layout layout() const {
+        // By pointer and size, as above: a conversion from a vector takes compilers longer than the rest of the class.
+        return {{patches_.data(), patches_.size()},
+                {coordinates_.data(), coordinates_.size()},
+                {blocks_.data(), blocks_.size()},
+                largest_};
+    }
 
   private:
     friend class PatchBuilder;

@@ -51,15 +51,15 @@ struct PictureView {
 
 class DepthCuller;
 
-// Where an object of a camera's picture lies in a light's shadow map.
+// An object of a camera's picture, with its place in a light's shadow map.
 struct DepthReceiver {
-    const ClusteredMesh* mesh = nullptr;  // that of the picture; read only if something of the object is seen
+    const ClusteredMesh* mesh = nullptr;  // the same as in the picture; read only if something of the object is seen
     glm::mat4 to_map{1.0f};               // takes model coordinates to clip coordinates of the map, as the shader does
     // Set it if anything within the mesh's bound may be seen, and not its triangles only.
     bool solid = false;
 };
 
-// What looks a shadow map up: the points of what a camera sees.
+// The points that look a shadow map up: those that a camera sees.
 struct DepthReceivers {
     static constexpr float kMaxRadius = 1024.0f;
 
@@ -81,13 +81,13 @@ struct VisibleCluster {
     std::uint64_t triangles = 0;
 };
 
-// With several samples per pixel, what is asked and drawn is counted for each.
+// Counts of the last call. With several samples per pixel, objects and clusters are counted once for each sample.
 struct DepthStatistics {
     std::uint64_t objects_listed = 0;  // with at least one triangle
-    std::uint64_t objects_asked = 0;   // their bounds may cover a sample of the picture
-    std::uint64_t clusters_asked = 0;  // of the objects that were not hidden as a whole
-    std::uint64_t clusters_drawn = 0;  // that were not hidden as a whole
-    // Of those clusters. The limit was exceeded if this and clusters_asked are more together.
+    std::uint64_t objects_asked = 0;   // whose bounds may cover a sample of the picture
+    std::uint64_t clusters_asked = 0;  // of objects that are not hidden as a whole
+    std::uint64_t clusters_drawn = 0;  // those that are not hidden as a whole
+    // Triangles of the drawn clusters. work_limit was exceeded if this plus clusters_asked is more.
     std::uint64_t triangles_drawn = 0;
     std::uint64_t triangles_listed = 0;
 };

@@ -48,7 +48,7 @@ inline constexpr std::uint32_t kNone = ~std::uint32_t{0};
 struct UpdateStatistics {
     std::uint32_t nodes_updated = 0;      // with a new world transform or layer mask
     std::uint32_t instances_updated = 0;  // with a new box
-    // Of those, instances whose world transform went out of range through a chain of valid ones. They keep their last
+    // Updated instances whose world transform went out of range through a chain of valid ones. They keep their last
     // valid box (at first one point at the origin) and have layer mask 0 until they come back into range.
     std::uint32_t instances_invalid = 0;
 };

@@ -213,7 +213,7 @@ struct ViewMatrix {
 
 class ViewResult;
 
-// What a camera sees, for the view of a light.
+// The answer to a camera's view, for the view of a light that casts shadows on it.
 struct ShadowReceivers {
     // The answer to the camera's view, which had a picture; not the one that the light's answer goes to. It holds until
     // an update changes something, an object or a mesh is removed, or a mesh is replaced.
@@ -223,7 +223,7 @@ struct ShadowReceivers {
 
 // Describes a view for World::view.
 struct ViewRequest {
-    // Where the view looks from: set a camera, a matrix or a volume.
+    // The view volume: set a camera, a matrix or a volume.
     std::optional<Camera> camera = {};
     std::optional<ViewMatrix> matrix = {};
     // Any convex volume, such as that of a shadow. A volume has no eye. For occlusion, set a camera or a matrix as

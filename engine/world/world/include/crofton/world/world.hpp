@@ -45,9 +45,9 @@ struct WorldOptions {
     double contact_margin = 0.0;  // ≥ 0: gaps up to this between shapes are contacts
     bool mesh_depth = false;      // computes depths of contacts between meshes; takes longer than finding them
     std::size_t max_pairs = std::size_t{1} << 24;  // update() fails if there are more, so that memory stays bounded
-    // Items' worth of background work on the tree an update (BoxTree::rebuild_step), beside what changes make
-    // necessary; kAutomatic: at least a 2048th of the objects and 128 while a rebuild is under way. 0: none, and no
-    // allocation.
+    // Background work on the tree in each update, as a number of items (BoxTree::rebuild_step), in addition to what
+    // changes require. kAutomatic: at least a 2048th of the objects and 128 while a rebuild is under way. 0: none, and
+    // no allocation.
     std::size_t rebuild_budget = kAutomatic;
     std::uint32_t updates_to_rest = 16;  // updates without motion after which an object rests again
     boxtree::Orientation tree = boxtree::Orientation::aligned;  // of the tree of resting objects
@@ -119,7 +119,7 @@ class World {
     // Scale: a transform that is not rigid scales the shape. A uniform scale, within 1e-5, works for any kind of shape.
     // Other maps, also flat and mirroring ones, work for shapes with vertices and no rounding, and for half-spaces.
     // Cylinders, cones and height fields may be scaled along their axes. Sizes are rounded to float. Scaled hulls and
-    // meshes are built anew whenever the scale changes.
+    // meshes are rebuilt whenever the scale changes.
     //
     // Errors: the object's transform would turn the shape into another kind (unsupported) or put it out of range; calls
     // that set transforms or parents return the same errors. nullptr for an object that was added with only a shape
@@ -206,7 +206,7 @@ class World {
     // query. Errors name what cannot be obeyed: no camera, matrix or volume, or two that contradict each other; a
     // camera or matrix that is not valid; a volume of more than 12 planes, or with one that is not finite; limits with
     // a hysteresis below 1, or neither 32 layer distances nor none; occlusion without an eye, or whose least cover is
-    // NaN; a depth buffer's size or a picture's out of its range; a picture beside occlusion, or without an eye;
+    // NaN; a depth buffer's size or a picture's out of its range; a picture together with occlusion, or without an eye;
     // receivers without a picture, without the answer to a view with a picture of this World, with one from before the
     // World changed, with `visible` itself, or with a radius out of its range.
     Result<void> view(const ViewRequest& request, ViewResult& visible, Executor& executor = serial_executor()) const;
@@ -284,7 +284,7 @@ class World {
   private:
     friend class world::RegionSolids;
     World(const WorldOptions& options, std::uint32_t first_generation);
-    // `visible`: where the answer goes; null: beside the receivers' for certain.
+    // `visible` receives the answer; null if it surely is not the receivers' result.
     [[nodiscard]] Result<void> check_receivers(const ViewRequest& request, const ViewResult* visible,
                                                std::uint64_t item) const;
     // Of the World's own objects.
