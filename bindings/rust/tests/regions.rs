@@ -61,7 +61,7 @@ fn what_is_refused_is_named_by_its_place_and_changes_nothing() {
     let error = Region::prepare(&[RegionObject::mesh(3, Transform::default())], &options).err().unwrap();
     assert_eq!((error.status, error.item), (Status::InvalidArgument, Some(0)));
     let few = RegionOptions { max_objects: 1, ..options };
-    assert_eq!(Region::prepare(&[ball(0.0, 1), ball(9.0, 2)], &few).err().unwrap().status, Status::BudgetExceeded);
+    assert_eq!(Region::prepare(&[ball(0.0, 1), ball(9.0, 2)], &few).err().unwrap().status, Status::OutOfRange);
     let region = Region::prepare(&[ball(0.0, 1)], &options).unwrap();
     let mut world = World::new().unwrap();
     assert_eq!(world.attach(&region, [f64::NAN, 0.0, 0.0]).unwrap_err().status, Status::NonFinite);
