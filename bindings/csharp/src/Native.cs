@@ -46,6 +46,24 @@ namespace Crofton {
         }
 
         [StructLayout(LayoutKind.Sequential)]
+        internal struct RegionObjectData {
+            public BoundData Bound;
+            public ulong User;
+            public uint Layers, CollidesWith, Mesh, Occludes, OnlyOccludes;
+            public IntPtr Transform, Shape;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct RegionOptionsData {
+            public UIntPtr Size;
+            public ulong MaxObjects;
+            public IntPtr ShouldStop, StopUser, Meshes;
+            public UIntPtr MeshCount;
+            public uint FindOccluders;
+            public double MaxOrigin;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
         internal struct ObjectData {
             public UIntPtr Size;
             public ulong User;
@@ -269,6 +287,14 @@ namespace Crofton {
         [DllImport(Library)] internal static extern int crofton_world_set_parent(WorldHandle world, NodeHandle node, NodeHandle[] parent);
         [DllImport(Library)] internal static extern int crofton_world_set_node_transforms(WorldHandle world, NodeHandle[] nodes, UIntPtr stride, Transform[] transforms, UIntPtr transformStride, UIntPtr count);
         [DllImport(Library)] internal static extern int crofton_world_add(WorldHandle world, ref ObjectData description, out ObjectHandle handle);
+        [DllImport(Library)] internal static extern RegionObjectData crofton_default_region_object();
+        [DllImport(Library)] internal static extern RegionOptionsData crofton_default_region_options();
+        [DllImport(Library)] internal static extern int crofton_region_prepare(RegionObjectData[] objects, UIntPtr count, ref RegionOptionsData options, IntPtr jobs, out RegionHandle region);
+        [DllImport(Library)] internal static extern int crofton_region_destroy(IntPtr region);
+        [DllImport(Library)] internal static extern int crofton_world_attach(WorldHandle world, RegionHandle region, ref Vector3 origin, out AttachedRegion attached);
+        [DllImport(Library)] internal static extern int crofton_world_detach(WorldHandle world, AttachedRegion region);
+        [DllImport(Library)] internal static extern int crofton_world_object_in(WorldHandle world, AttachedRegion region, uint place, out ObjectHandle handle);
+        [DllImport(Library)] internal static extern int crofton_world_place_of(WorldHandle world, ObjectHandle handle, out AttachedRegion region, out uint place);
         [DllImport(Library)] internal static extern int crofton_world_remove(WorldHandle world, ObjectHandle handle);
         [DllImport(Library)] internal static extern int crofton_world_set_transforms(WorldHandle world, ObjectHandle[] objects, UIntPtr stride, Transform[] transforms, UIntPtr transformStride, UIntPtr count);
         [DllImport(Library)] internal static extern int crofton_world_set_boxes(WorldHandle world, ObjectHandle[] objects, UIntPtr stride, Obb[] boxes, UIntPtr boxStride, UIntPtr count);
@@ -312,6 +338,9 @@ namespace Crofton {
     }
     internal sealed class VisibleHandle : OwnedHandle {
         protected override int Destroy(IntPtr raw) { return Native.crofton_view_result_destroy(raw); }
+    }
+    internal sealed class RegionHandle : OwnedHandle {
+        protected override int Destroy(IntPtr raw) { return Native.crofton_region_destroy(raw); }
     }
     internal sealed class FoundHandle : OwnedHandle {
         protected override int Destroy(IntPtr raw) { return Native.crofton_found_destroy(raw); }

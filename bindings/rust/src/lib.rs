@@ -26,6 +26,7 @@ mod geometry;
 mod jobs;
 mod occlusion;
 mod queries;
+mod regions;
 #[allow(missing_docs, dead_code)]
 mod sys;
 mod triangulate;
@@ -43,6 +44,7 @@ pub use geometry::{
 pub use jobs::{Executor, Threads};
 pub use occlusion::{FindOptions, OcclusionOptions, OcclusionStatistics};
 pub use queries::{Closest, Contact, Containment, Found, MeshContact, ObjectHit, ObjectPair, Phase, QueryShape};
+pub use regions::{AttachedRegion, Region, RegionObject, RegionOptions};
 pub use triangulate::{Method, Triangulation, Triangulator};
 pub use views::{Cluster, Clusters, DrawLimits, PictureView, Seen, SeenByMany, ShadowReceivers};
 pub use views::{ViewMatrix, ViewRequest, ViewResult, VisibleCluster};

@@ -16,7 +16,7 @@ macro_rules! opaque {
         }
     )*};
 }
-opaque!(World, ViewResult, Found, Shape, Triangulator);
+opaque!(World, ViewResult, Found, Region, Shape, Triangulator);
 
 #[repr(C)]
 pub struct Jobs {
@@ -113,6 +113,31 @@ pub struct ObjectDescription {
     pub only_occludes: u32,
     pub shape: *const Shape,
     pub hidden: u32,
+}
+
+#[repr(C)]
+pub struct RegionObject {
+    pub bound: Bound,
+    pub user: u64,
+    pub layers: u32,
+    pub collides_with: u32,
+    pub mesh: u32,
+    pub occludes: u32,
+    pub only_occludes: u32,
+    pub transform: *const crate::Transform,
+    pub shape: *const Shape,
+}
+
+#[repr(C)]
+pub struct RegionOptions {
+    pub size: usize,
+    pub max_objects: u64,
+    pub should_stop: *const c_void,
+    pub stop_user: *mut c_void,
+    pub meshes: *const MeshData,
+    pub mesh_count: usize,
+    pub find_occluders: u32,
+    pub max_origin: f64,
 }
 
 pub const SET_USER: u32 = 1;
@@ -512,6 +537,23 @@ extern "C" {
     ) -> Status;
     pub fn crofton_world_set(
         world: *mut World, object: crate::Object, members: u32, description: *const ObjectDescription,
+    ) -> Status;
+    pub fn crofton_default_region_object() -> RegionObject;
+    pub fn crofton_default_region_options() -> RegionOptions;
+    pub fn crofton_region_prepare(
+        objects: *const RegionObject, count: usize, options: *const RegionOptions, jobs: *const Jobs,
+        region: *mut *mut Region,
+    ) -> Status;
+    pub fn crofton_region_destroy(region: *mut Region) -> Status;
+    pub fn crofton_world_attach(
+        world: *mut World, region: *const Region, origin: *const f64, attached: *mut crate::AttachedRegion,
+    ) -> Status;
+    pub fn crofton_world_detach(world: *mut World, region: crate::AttachedRegion) -> Status;
+    pub fn crofton_world_object_in(
+        world: *const World, region: crate::AttachedRegion, place: u32, object: *mut crate::Object,
+    ) -> Status;
+    pub fn crofton_world_place_of(
+        world: *const World, object: crate::Object, region: *mut crate::AttachedRegion, place: *mut u32,
     ) -> Status;
     pub fn crofton_world_update(world: *mut World, jobs: *const Jobs) -> Status;
     pub fn crofton_world_get_statistics(world: *const World, statistics: *mut WorldStatistics) -> Status;

@@ -150,7 +150,8 @@ fn walls() -> (World, Mesh, Vec<Object>) {
 #[test]
 fn a_picture_lists_the_triangles_that_it_needs() {
     let (mut world, mesh, objects) = walls();
-    let picture = Some(PictureView { width: 160, height: 90, depth: DepthRange::ReversedZeroToOne, samples: 1, work_limit: 0 });
+    let picture =
+        Some(PictureView { width: 160, height: 90, depth: DepthRange::ReversedZeroToOne, samples: 1, work_limit: 0 });
     let mut visible = ViewResult::new().unwrap();
     let request = ViewRequest { picture, ..Camera::default().into() };
     let seen = world.view(&request, &mut visible).unwrap();
@@ -171,7 +172,8 @@ fn a_picture_lists_the_triangles_that_it_needs() {
 #[test]
 fn a_light_lists_what_throws_a_shadow_on_what_the_camera_sees() {
     let (world, _, objects) = walls();
-    let picture = Some(PictureView { width: 160, height: 90, depth: DepthRange::ReversedZeroToOne, samples: 1, work_limit: 0 });
+    let picture =
+        Some(PictureView { width: 160, height: 90, depth: DepthRange::ReversedZeroToOne, samples: 1, work_limit: 0 });
     let (mut of_camera, mut of_lamp) = (ViewResult::new().unwrap(), ViewResult::new().unwrap());
     let seen = world.view(&ViewRequest { picture, ..Camera::default().into() }, &mut of_camera).unwrap();
     // The second wall is hidden from the camera and from a lamp beside it.
@@ -182,7 +184,13 @@ fn a_light_lists_what_throws_a_shadow_on_what_the_camera_sees() {
     assert!(casters.ids().contains(&objects[0].index) && !casters.ids().contains(&objects[1].index));
     let behind = Camera { position: [0.0, 0.0, -30.0], ..Camera::default() };
     let of_behind = ViewRequest { camera: Some(behind), ..request.clone() };
-    assert!(world.view(&of_behind, &mut of_lamp).unwrap().triangles().unwrap().iter().all(|t| t.object != objects[1].index));
+    assert!(world
+        .view(&of_behind, &mut of_lamp)
+        .unwrap()
+        .triangles()
+        .unwrap()
+        .iter()
+        .all(|t| t.object != objects[1].index));
     let no_radius = ViewRequest { receivers: Some(ShadowReceivers { seen: &seen, radius: 0.0 }), ..request.clone() };
     assert_eq!(world.view(&no_radius, &mut of_lamp).err().unwrap().status, Status::OutOfRange);
     let no_map = ViewRequest { picture: None, ..request.clone() };
@@ -195,7 +203,8 @@ fn a_light_lists_what_throws_a_shadow_on_what_the_camera_sees() {
 fn each_of_many_views_is_obeyed_as_it_is_alone() {
     let (world, _, objects) = walls();
     let camera = || ViewRequest::from(Camera::default());
-    let picture = Some(PictureView { width: 160, height: 90, depth: DepthRange::ReversedZeroToOne, samples: 1, work_limit: 0 });
+    let picture =
+        Some(PictureView { width: 160, height: 90, depth: DepthRange::ReversedZeroToOne, samples: 1, work_limit: 0 });
     let near = DrawLimits { max_distance_in_radii: 5.0, ..DrawLimits::new([0.0; 3]) };
     let distances = [1.0, 100.0, 1.0];
     let by_item = DrawLimits { item_distances: &distances, ..DrawLimits::new([0.0; 3]) };

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+using System;
+using System.Collections.Generic;
+using System.Runtime.InteropServices;
+
+namespace Crofton {
+    /// <summary>An object of a Region: a bound, or a mesh of the region's under a transform; relative to the region's origin.</summary>
+    public struct RegionObject {
+        internal Bound Shape;
+        internal int Mesh;
+        internal Transform Transform;
+        internal ulong User;
+        internal uint Layers, CollidesWith;
+
+        /// <summary>An object with only a bound; `user` is returned with every answer.</summary>
+        public static RegionObject Of(Bound bound, ulong user = 0, uint layers = World.AllLayers, uint collidesWith = World.AllLayers) {
+            return new RegionObject { Shape = bound, Mesh = -1, User = user, Layers = layers, CollidesWith = collidesWith };
+        }
+        /// <summary>An object with the mesh at that place among the region's.</summary>
+        public static RegionObject Of(int mesh, Transform transform, ulong user = 0, uint layers = World.AllLayers, uint collidesWith = World.AllLayers) {
+            if (mesh < 0) throw new ArgumentOutOfRangeException("mesh");
+            return new RegionObject { Mesh = mesh, Transform = transform, User = user, Layers = layers, CollidesWith = collidesWith };
+        }
+    }
+
+    /// <summary>A mesh that objects of a Region share: x, y, z of each vertex; three indices per triangle.</summary>
+    public sealed class RegionMesh {
+        public float[] Positions;
+        public uint[] Indices;
+        /// <summary>Views with a picture list the mesh's triangles. OneSided: back faces are not drawn.</summary>
+        public bool Clusters, OneSided;
+    }
+
+    /// <summary>Many objects that do not move. Prepare it on any thread and attach it to a World, where that takes microseconds.</summary>
+    public sealed class Region : IDisposable {
+        internal readonly RegionHandle Handle;
+
+        /// <summary>Prepares a region. If an object or a mesh is refused, the exception's Item is its place. With findOccluders, searches
+        /// the meshes for occluders, as World.FindOccluders does.</summary>
+        public Region(RegionObject[] objects, RegionMesh[] meshes = null, bool findOccluders = false) {
+            Library.NotNull(objects, "objects");
+            Library.Load();
+            var memory = new List<GCHandle>();
+            Func<object, IntPtr> pinned = array => {
+                memory.Add(GCHandle.Alloc(array, GCHandleType.Pinned));
+                return memory[memory.Count - 1].AddrOfPinnedObject();
+            };
+            try {
+                var transforms = new Transform[objects.Length];
+                IntPtr first = pinned(transforms);
+                var data = new Native.RegionObjectData[objects.Length];
+                for (int i = 0; i < data.Length; ++i) {
+                    RegionObject given = objects[i];
+                    data[i] = Native.crofton_default_region_object();
+                    data[i].User = given.User;
+                    data[i].Layers = given.Layers;
+                    data[i].CollidesWith = given.CollidesWith;
+                    if (given.Mesh < 0) {
+                        data[i].Bound = given.Shape.Data;
+                        continue;
+                    }
+                    data[i].Mesh = (uint)given.Mesh;
+                    transforms[i] = given.Transform;
+                    data[i].Transform = new IntPtr(first.ToInt64() + (long)i * Marshal.SizeOf(typeof(Transform)));
+                }
+                meshes = meshes ?? new RegionMesh[0];
+                var described = new Native.MeshData[meshes.Length];
+                for (int i = 0; i < meshes.Length; ++i) {
+                    Library.NotNull(meshes[i], "meshes");
+                    Library.NotNull(meshes[i].Positions, "meshes");
+                    Library.NotNull(meshes[i].Indices, "meshes");
+                    if (meshes[i].Positions.Length % 3 != 0) throw new ArgumentException("positions are x, y, z of each vertex", "meshes");
+                    described[i] = Native.crofton_default_mesh_data();
+                    described[i].Positions = pinned(meshes[i].Positions);
+                    described[i].PositionCount = (UIntPtr)(meshes[i].Positions.Length / 3);
+                    described[i].Indices = pinned(meshes[i].Indices);
+                    described[i].IndexCount = (UIntPtr)meshes[i].Indices.Length;
+                    described[i].Clusters = meshes[i].Clusters ? 1u : 0u;
+                    described[i].OneSided = meshes[i].OneSided ? 1u : 0u;
+                }
+                Native.RegionOptionsData options = Native.crofton_default_region_options();
+                options.Meshes = pinned(described);
+                options.MeshCount = (UIntPtr)described.Length;
+                options.FindOccluders = findOccluders ? 1u : 0u;
+                Library.Check(Native.crofton_region_prepare(data, (UIntPtr)data.Length, ref options, IntPtr.Zero, out Handle));
+            } finally {
+                foreach (GCHandle one in memory) one.Free();
+            }
+        }
+        /// <summary>Frees the region; a World that it is attached to keeps what it needs.</summary>
+        public void Dispose() { Handle.Dispose(); }
+    }
+
+    /// <summary>A Region that is attached to a World.</summary>
+    [StructLayout(LayoutKind.Sequential)]
+    public struct AttachedRegion { public uint Index, Generation; }
+
+    public sealed partial class World {
+        /// <summary>Attaches a region: from the next update on, answers contain its objects, moved by the origin.</summary>
+        public AttachedRegion Attach(Region region, Vector3 origin) {
+            Library.NotNull(region, "region");
+            AttachedRegion attached;
+            Library.Check(Native.crofton_world_attach(Handle, region.Handle, ref origin, out attached));
+            return attached;
+        }
+        /// <summary>Detaches a region. Handles of its objects are stale at once; views follow with the next update.</summary>
+        public void Detach(AttachedRegion region) { Library.Check(Native.crofton_world_detach(Handle, region)); }
+        /// <summary>Returns the object at a place in the array that the region was prepared from. SetHidden can hide it; other changes are errors.</summary>
+        public ObjectHandle ObjectIn(AttachedRegion region, int place) {
+            ObjectHandle handle;
+            Library.Check(Native.crofton_world_object_in(Handle, region, (uint)place, out handle));
+            return handle;
+        }
+        /// <summary>Returns the region of an object and its place there. Error: the object was added by Add.</summary>
+        public AttachedRegion RegionOf(ObjectHandle handle, out int place) {
+            AttachedRegion region;
+            uint found;
+            Library.Check(Native.crofton_world_place_of(Handle, handle, out region, out found));
+            place = (int)found;
+            return region;
+        }
+    }
+}

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: MIT
+//! Parts of a large world that come and go.
+use crate::error::check;
+use crate::jobs::with_jobs;
+use crate::{sys, Bound, Executor, MeshData, Object, Result, Transform, World};
+use std::ptr;
+
+/// An object of a [`Region`]. Get it from [`RegionObject::bound`] or [`RegionObject::mesh`] and change its members.
+#[derive(Debug, Clone, Copy)]
+pub struct RegionObject {
+    /// A bound, relative to the region's origin; none for an object with a mesh.
+    pub bound: Option<Bound>,
+    /// The place of its mesh in [`RegionOptions::meshes`].
+    pub mesh: Option<u32>,
+    /// Places the mesh, relative to the region's origin.
+    pub transform: Transform,
+    /// A number that is returned with every answer.
+    pub user: u64,
+    /// The layers that the object is in.
+    pub layers: u32,
+    /// The layers that the object collides with.
+    pub collides_with: u32,
+    /// False: the object's mesh does not hide others.
+    pub occludes: bool,
+}
+
+impl RegionObject {
+    fn new(bound: Option<Bound>, mesh: Option<u32>, transform: Transform) -> RegionObject {
+        let all = u32::MAX;
+        RegionObject { bound, mesh, transform, user: 0, layers: all, collides_with: all, occludes: true }
+    }
+    /// Describes an object with only a bound.
+    pub fn bound(bound: Bound) -> RegionObject {
+        RegionObject::new(Some(bound), None, Transform::default())
+    }
+    /// Describes an object with the mesh at that place in [`RegionOptions::meshes`].
+    pub fn mesh(place: u32, transform: Transform) -> RegionObject {
+        RegionObject::new(None, Some(place), transform)
+    }
+    fn raw(&self) -> sys::RegionObject {
+        let mut raw = unsafe { sys::crofton_default_region_object() };
+        if let Some(bound) = &self.bound {
+            raw.bound = bound.raw();
+        }
+        if let Some(mesh) = self.mesh {
+            raw.mesh = mesh;
+            raw.transform = &self.transform;
+        }
+        (raw.user, raw.layers, raw.collides_with) = (self.user, self.layers, self.collides_with);
+        raw.occludes = self.occludes as u32;
+        raw
+    }
+}
+
+/// Options of [`Region::prepare`].
+#[derive(Debug, Clone, Copy)]
+pub struct RegionOptions<'a> {
+    /// The meshes that the objects share.
+    pub meshes: &'a [MeshData<'a>],
+    /// Searches the meshes for occluders, as [`World::find_occluders`] does.
+    pub find_occluders: bool,
+    /// A region with more is refused.
+    pub max_objects: u64,
+    /// No coordinate of an origin may be larger if an object has a mesh.
+    pub max_origin: f64,
+}
+
+impl Default for RegionOptions<'_> {
+    fn default() -> Self {
+        let raw = unsafe { sys::crofton_default_region_options() };
+        RegionOptions { meshes: &[], find_occluders: false, max_objects: raw.max_objects, max_origin: raw.max_origin }
+    }
+}
+
+/// Many objects that do not move. Prepare it on any thread and attach it to a [`World`], where that takes microseconds.
+///
+/// ```
+/// use crofton::{Bound, Obb, Region, RegionObject, RegionOptions, World};
+/// # fn main() -> Result<(), crofton::Error> {
+/// let trees: Vec<_> = (0..100)
+///     .map(|i| RegionObject::bound(Bound::Box(Obb::aligned([3.0 * i as f64, 0.0, 0.0], [1.0; 3]))))
+///     .collect();
+/// let forest = Region::prepare(&trees, &RegionOptions::default())?; // on a thread that loads
+/// let mut world = World::new()?;
+/// let east = world.attach(&forest, [1000.0, 0.0, 0.0])?;
+/// world.update()?; // from here on, answers contain the trees
+/// let tree = world.object_in(east, 7)?;
+/// assert_eq!(world.obb(tree)?.center, [1021.0, 0.0, 0.0]);
+/// world.detach(east)?;
+/// # Ok(()) }
+/// ```
+pub struct Region {
+    raw: *mut sys::Region,
+}
+
+// A region never changes.
+unsafe impl Send for Region {}
+unsafe impl Sync for Region {}
+
+impl Drop for Region {
+    fn drop(&mut self) {
+        unsafe { sys::crofton_region_destroy(self.raw) };
+    }
+}
+
+impl Region {
+    /// Prepares a region. If an object or a mesh is refused, [`Error::item`](crate::Error) is its place.
+    pub fn prepare(objects: &[RegionObject], options: &RegionOptions) -> Result<Region> {
+        Region::prepare_on(None, objects, options)
+    }
+
+    /// Does the same on the executor's threads.
+    pub fn prepare_on(
+        executor: Option<&dyn Executor>, objects: &[RegionObject], options: &RegionOptions,
+    ) -> Result<Region> {
+        let meshes = options.meshes.iter().map(|mesh| mesh.raw()).collect::<Result<Vec<_>>>()?;
+        let objects: Vec<_> = objects.iter().map(|object| object.raw()).collect();
+        let mut raw_options = unsafe { sys::crofton_default_region_options() };
+        raw_options.meshes = meshes.as_ptr();
+        raw_options.mesh_count = meshes.len();
+        raw_options.find_occluders = options.find_occluders as u32;
+        raw_options.max_objects = options.max_objects;
+        raw_options.max_origin = options.max_origin;
+        let mut raw = ptr::null_mut();
+        check(with_jobs(executor, |jobs| unsafe {
+            sys::crofton_region_prepare(objects.as_ptr(), objects.len(), &raw_options, jobs, &mut raw)
+        }))?;
+        Ok(Region { raw })
+    }
+}
+
+/// A region that is attached to a [`World`].
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct AttachedRegion {
+    /// Reused after the region was detached.
+    pub index: u32,
+    /// Tells apart those that have used the index.
+    pub generation: u32,
+}
+
+impl World {
+    /// Attaches a region: from the next update on, answers contain its objects, moved by `origin`. The world keeps what
+    /// it needs of the region.
+    pub fn attach(&mut self, region: &Region, origin: [f64; 3]) -> Result<AttachedRegion> {
+        let mut attached = AttachedRegion { index: 0, generation: 0 };
+        check(unsafe { sys::crofton_world_attach(self.raw, region.raw, origin.as_ptr(), &mut attached) })?;
+        Ok(attached)
+    }
+
+    /// Detaches a region. Handles of its objects are stale at once; views follow with the next update.
+    pub fn detach(&mut self, region: AttachedRegion) -> Result<()> {
+        check(unsafe { sys::crofton_world_detach(self.raw, region) })
+    }
+
+    /// Returns the object at `place` in the slice that the region was prepared from. [`World::set_hidden`] can hide it;
+    /// other changes are errors.
+    pub fn object_in(&self, region: AttachedRegion, place: u32) -> Result<Object> {
+        let mut object = Object { index: 0, generation: 0 };
+        check(unsafe { sys::crofton_world_object_in(self.raw, region, place, &mut object) })?;
+        Ok(object)
+    }
+
+    /// Returns the region and place of an object. Error: the object was added by [`World::add`].
+    pub fn place_of(&self, object: Object) -> Result<(AttachedRegion, u32)> {
+        let (mut region, mut place) = (AttachedRegion { index: 0, generation: 0 }, 0);
+        check(unsafe { sys::crofton_world_place_of(self.raw, object, &mut region, &mut place) })?;
+        Ok((region, place))
+    }
+}
