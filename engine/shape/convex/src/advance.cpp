@@ -23,6 +23,22 @@ Contact contact_of(const Distance& d) {
     return {d.distance, d.lower, d.normal, d.on_a, d.on_b};
 }
 
+// Whether deepest points of a triangle and a box lie on both. If a side of one lies along the other, many corners are
+// equally deep, and the closed form takes any.
+bool lie_on_both(const Triangle& corners, const ShapeAtPose& triangle, const ShapeAtPose& box,
+                 const glm::dvec3& on_triangle, const glm::dvec3& on_box, double error) {
+    const glm::dvec3 p = glm::inverse(triangle.pose.rotation) * (on_triangle - triangle.pose.translation),
+                     q = glm::abs(glm::inverse(box.pose.rotation) * (on_box - box.pose.translation)),
+                     normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+    for (std::size_t k = 0; k < 3; ++k) {
+        const glm::dvec3 edge = corners[k == 2 ? 0 : k + 1] - corners[k];
+        if (glm::dot(glm::cross(normal, edge), p - corners[k]) < -error * glm::length(normal) * glm::length(edge))
+            return false;
+    }
+    const glm::dvec3 limit = box.shape.half_extents() + (box.shape.radius() + error);
+    return q.x <= limit.x && q.y <= limit.y && q.z <= limit.z;
+}
+
 // Of a triangle and a sphere, a capsule or a box in closed form. False where that leaves a doubt.
 bool triangle_contact(const ShapeAtPose& triangle, const ShapeAtPose& other, Contact& contact) {
     const Kind kind = other.shape.kind();
@@ -43,7 +59,8 @@ bool triangle_contact(const ShapeAtPose& triangle, const ShapeAtPose& other, Con
     contact.normal = touch.normal;
     contact.on_a = origin + touch.on_a;
     contact.on_b = contact.on_a - touch.depth * touch.normal;
-    return true;
+    return kind != Kind::box || touch.depth <= other.shape.radius() ||
+           lie_on_both(corners, triangle, other, contact.on_a, contact.on_b, 1e-10 * pair.size);
 }
 bool contact_in_closed_form(const ShapeAtPose& a, const ShapeAtPose& b, Contact& contact) {
     if (triangle_contact(a, b, contact)) return true;
