@@ -27,7 +27,8 @@ HWY_INLINE float limit_of(const RayQuery& q, double t) {
 template <class V>
 struct FloatLanes {
     V x[3], y[3], z[3], shear[2], inverse;
-    V reach;  // from that point to the limit, and the error bound
+    V reach;          // from that point to the limit, and the error bound
+    V start, finish;  // where certain hits begin and end, seen from there; read only where these are asked for
 };
 
 // Pairs that certainly do not meet before the limit. In the plane coordinates the ray is the origin, and it passes
@@ -38,10 +39,13 @@ struct FloatLanes {
 // again twice. The shear has four roundings, of differences up to 2 of these coordinates: 8 u. The last product and sum
 // add 4 u. These 22 u are within 2 e, with e the query's error bound, at least 12.5 u. With m the largest plane
 // coordinate, an edge's value is off by at most 8 m e + 8 e²
-// + 2^-21 m². No triangle is hit before its nearest vertex along the ray, whose parameter is off by less than e: 1 /
-// direction_f[z] is at most 1.
+// + 2^-21 m², and what underflows is below 1e-37. No triangle is hit before its nearest vertex along the ray, whose
+// parameter is off by less than e: 1 / direction_f[z] is at most 1.
+//
+// By the same bounds a ray certainly passes through a triangle whose edges have it on one side, and hits it between the
+// nearest vertex and the farthest: `met`, where that is not null.
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE hn::Mask<D> certainly_apart(D d, const FloatLanes<V>& lanes, float error_bound) {
+HWY_INLINE hn::Mask<D> certainly_apart(D d, const FloatLanes<V>& lanes, float error_bound, hn::Mask<D>* met = nullptr) {
     V px[3], py[3], nearest = hn::Set(d, 3e38f), m = hn::Zero(d);
     for (int v = 0; v < 3; ++v) {
         px[v] = hn::NegMulAdd(lanes.shear[0], lanes.z[v], lanes.x[v]);
@@ -50,7 +54,8 @@ HWY_INLINE hn::Mask<D> certainly_apart(D d, const FloatLanes<V>& lanes, float er
         m = hn::Max(m, hn::Max(hn::Abs(px[v]), hn::Abs(py[v])));
     }
     const V eight = hn::Set(d, 8.0f * error_bound);
-    const V error = hn::MulAdd(hn::MulAdd(m, hn::Set(d, 0x1p-21f), eight), m, hn::Mul(eight, hn::Set(d, error_bound)));
+    const V least = hn::MulAdd(eight, hn::Set(d, error_bound), hn::Set(d, 1e-37f));
+    const V error = hn::MulAdd(hn::MulAdd(m, hn::Set(d, 0x1p-21f), eight), m, least);
     V low = hn::Set(d, 3e38f), high = hn::Set(d, -3e38f);
     for (int v = 0; v < 3; ++v) {
         const int w = (v + 1) % 3;
@@ -58,12 +63,21 @@ HWY_INLINE hn::Mask<D> certainly_apart(D d, const FloatLanes<V>& lanes, float er
         low = hn::Min(low, side);
         high = hn::Max(high, side);
     }
+    if (met != nullptr) {
+        V farthest = hn::Mul(lanes.z[0], lanes.inverse);
+        for (int v = 1; v < 3; ++v) farthest = hn::Max(farthest, hn::Mul(lanes.z[v], lanes.inverse));
+        const auto through = hn::Or(hn::Gt(low, error), hn::Lt(high, hn::Neg(error)));
+        const auto within = hn::And(hn::Gt(nearest, lanes.start), hn::Lt(farthest, lanes.finish));
+        *met = hn::And(through, within);
+    }
     const auto outside = hn::And(hn::Lt(low, hn::Neg(error)), hn::Gt(high, error));
     return hn::Or(outside, hn::Gt(nearest, lanes.reach));
 }
 
-// Triangles that the ray may meet before `limit`, in float. `along`: where it is beside them.
-HWY_INLINE std::uint32_t candidates(const mesh::MeshLeaf& leaf, const RayQuery& q, float along, float limit) {
+// Triangles that the ray may meet before `limit`, in float. `along`: where it is beside them. Where any hit will do,
+// `met` says whether one of them is certainly hit.
+HWY_INLINE std::uint32_t candidates(const mesh::MeshLeaf& leaf, const RayQuery& q, float along, float limit,
+                                    bool& met) {
     const hn::CappedTag<float, mesh::kMeshLeafWidth> d;
     float beside[3];
     for (int i = 0; i < 3; ++i) beside[i] = q.start[i] + along * q.direction_f[i];
@@ -81,7 +95,15 @@ HWY_INLINE std::uint32_t candidates(const mesh::MeshLeaf& leaf, const RayQuery& 
         for (int k = 0; k < 2; ++k) lanes.shear[k] = hn::Set(d, q.shear[k]);
         lanes.inverse = hn::Set(d, q.inverse[q.axis[2]]);
         lanes.reach = hn::Set(d, limit - along + q.error_bound);
-        apart |= simd::mask_bits(d, certainly_apart(d, lanes, q.error_bound)) << l;
+        if (!q.any) {
+            apart |= simd::mask_bits(d, certainly_apart(d, lanes, q.error_bound)) << l;
+            continue;
+        }
+        lanes.start = hn::Set(d, 2.0f * q.error_bound - along);
+        lanes.finish = hn::Set(d, limit * (1.0f - 0x1p-18f) - along - 2.0f * q.error_bound);  // limit_of() rounds up
+        hn::Mask<decltype(d)> certain;
+        apart |= simd::mask_bits(d, certainly_apart(d, lanes, q.error_bound, &certain)) << l;
+        met |= !hn::AllFalse(d, certain);
     }
     return ~apart & ((1u << mesh::kMeshLeafWidth) - 1u);  // unused lanes repeat the last triangle
 }
@@ -203,12 +225,18 @@ HWY_INLINE bool is_before(double t, std::uint32_t triangle, const RayAnswer& ans
     return t <= answer.t && !(answer.hit && t == answer.t && triangle > answer.triangle);
 }
 
-// True if it has changed the answer. `along`: where the ray comes to the leaf's box.
+// True if it has changed the answer; where any hit will do, `hit` alone. `along`: where the ray comes to the leaf's
+// box.
 HWY_INLINE bool trace_leaf(const RayQuery& q, std::uint32_t index, float along, float limit, ExactTest meets,
                            RayAnswer& answer) {
     const mesh::MeshLeaf& leaf = q.leaves[index];
-    const std::uint32_t wanted = candidates(leaf, q, along, limit);
+    bool met = false;
+    const std::uint32_t wanted = candidates(leaf, q, along, limit, met);
     if (wanted == 0) return false;
+    if (met) {
+        answer.hit = true;
+        return true;
+    }
     HWY_ALIGN double t[mesh::kMeshLeafWidth];
     bool found = false;
     const HitBits hits = triangle_hits(leaf, q, wanted, t);
