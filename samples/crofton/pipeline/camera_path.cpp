@@ -221,13 +221,15 @@ Result<CameraPath> make_camera_path(const PathOptions& options, const Aabb& boun
 
 Json to_json(const Camera& camera) {
     const auto vector = [](const glm::dvec3& v) { return Json::array({v.x, v.y, v.z}); };
-    return {{"position", vector(camera.position)},
-            {"forward", vector(camera.forward)},
-            {"up", vector(camera.up)},
-            {"fov_y", camera.fov_y},
-            {"aspect", camera.aspect},
-            {"near", camera.near_distance},
-            {"far", std::isinf(camera.far_distance) ? Json("infinity") : Json(camera.far_distance)}};
+    Json entry = {{"position", vector(camera.position)},
+                  {"forward", vector(camera.forward)},
+                  {"up", vector(camera.up)},
+                  {"fov_y", camera.fov_y},
+                  {"aspect", camera.aspect},
+                  {"near", camera.near_distance},
+                  {"far", std::isinf(camera.far_distance) ? Json("infinity") : Json(camera.far_distance)}};
+    if (camera.projection == Projection::orthographic) entry["height"] = camera.height;
+    return entry;
 }
 
 Result<Camera> camera_from_json(const Json& entry, std::uint64_t item) {
@@ -244,6 +246,12 @@ Result<Camera> camera_from_json(const Json& entry, std::uint64_t item) {
         auto read = number_from(entry, field, *value, item);
         if (!read) return tl::unexpected(read.error());
         *value = *read;
+    }
+    if (entry.find("height") != nullptr) {
+        auto height = number_from(entry, "height", camera.height, item);
+        if (!height) return tl::unexpected(height.error());
+        camera.projection = Projection::orthographic;
+        camera.height = *height;
     }
     if (auto valid = validate(camera); !valid) return fail(valid.error().code, item, valid.error().message);
     return camera;

@@ -46,7 +46,8 @@ struct CameraPath {
 [[nodiscard]] Result<CameraPath> make_camera_path(const PathOptions& options, const Aabb& bounds,
                                                   std::span<const glm::dvec3> walk);
 
-// {position, forward, up, fov_y, aspect, near, far}; far is the string "infinity" where it is infinite.
+// {position, forward, up, fov_y, aspect, near, far}; far is the string "infinity" where it is infinite. Orthographic
+// cameras have a height, others have none.
 [[nodiscard]] Json to_json(const Camera& camera);
 // Fields that are absent keep Camera's defaults. Errors: wrong types, invalid values (validate(Camera)), the entry's
 // number as item.

@@ -42,6 +42,19 @@ TEST_SUITE("pipeline/camera_path") {
         CHECK(again->position == camera.position);
         CHECK(again->forward == camera.forward);
         CHECK(std::isinf(again->far_distance));
+        CHECK(again->projection == Projection::perspective);
+    }
+
+    TEST_CASE("an orthographic camera survives its JSON, and its height must be one") {
+        Camera camera;
+        camera.projection = Projection::orthographic;
+        camera.height = 1.0 / 3.0;
+        const auto again = camera_from_json(parsed(to_json(camera).dump()), 0);
+        REQUIRE(again.has_value());
+        CHECK(again->projection == Projection::orthographic);
+        CHECK(again->height == camera.height);
+        CHECK(error_of(camera_from_json(parsed(R"({"height": "tall"})"), 8)).code == ErrorCode::parse);
+        CHECK(error_of(camera_from_json(parsed(R"({"height": -1})"), 9)).code == ErrorCode::out_of_range);
     }
 
     TEST_CASE("every built-in path gives the requested number of valid cameras, the same for the same seed") {
