@@ -21,12 +21,6 @@ namespace {
 
 constexpr std::size_t kRoomBehind = 64;  // each list, for vector stores
 
-template <class T>
-T* room(Vector<T>& buffer, std::size_t size) {
-    if (buffer.size() < size + kRoomBehind) buffer.resize(size + kRoomBehind);
-    return buffer.data();
-}
-
 std::size_t words_of(const MovedTree& tree) {
     return (std::size_t{tree.arrays.item_count} + 63) / 64;
 }
@@ -59,7 +53,7 @@ struct MovedTreesQuery::State {
     std::size_t views_made = 0;
     std::array<TreeKernelInput, kMost> inputs;
     std::array<std::uint32_t, kMost> planes;
-    Vector<std::uint32_t> inside, straddling, undecided, undecided_trees, work;
+    RawBuffer<std::uint32_t> inside, straddling, undecided, undecided_trees, work;
     // For list(): bits of what is seen and of what straddles, tree by tree; where each tree's words begin.
     Vector<std::uint64_t> bits;
     std::array<std::size_t, kMost + 1> first_word;
@@ -158,16 +152,16 @@ MovedTreesQuery::State::Found MovedTreesQuery::State::ask(std::span<const Asked>
     TreeKernelOutput output{};
     output.inside = inside_ids;
     output.straddling = straddling_ids;
-    output.undecided = room(undecided, items);
-    output.undecided_trees = room(undecided_trees, items);
+    output.undecided = undecided.room(items + kRoomBehind);
+    output.undecided_trees = undecided_trees.room(items + kRoomBehind);
     output.work_size = blocks + boxtree::kWidth;
-    output.work = room(work, kMovedWorkLists * output.work_size);
+    output.work = work.room(kMovedWorkLists * output.work_size + kRoomBehind);
     run_moved_trees_kernel(inputs.data(), planes.data(), asked.size(), output);
     Found found{output.inside_count, output.straddling_count};
     for (std::size_t i = 0; i < output.undecided_count; ++i) {
-        const std::size_t t = undecided_trees[i];
+        const std::size_t t = undecided_trees.data()[i];
         const MovedTree& tree = *asked[t].tree;
-        const boxtree::ItemId item = tree.arrays.slot_items[undecided[i]];
+        const boxtree::ItemId item = tree.arrays.slot_items[undecided.data()[i]];
         const Obb box = tree.move(tree.arrays.boxes[item]);
         const Verdict verdict = classify_usable(view->frustum, box, mode);
         if (verdict != Verdict::outside)
@@ -228,8 +222,8 @@ void MovedTreesQuery::find_visible(std::span<const Asked> trees, CullMode mode) 
         state.first_word[t + 1] = state.first_word[t] + words_of(*trees[t].tree);
     }
     const std::size_t words = state.first_word[trees.size()] + 1;  // one more for the kernel
-    std::uint32_t* const inside = room(state.inside, 64 * words);
-    std::uint32_t* const straddling = room(state.straddling, 64 * words);
+    std::uint32_t* const inside = state.inside.room(64 * words + kRoomBehind);
+    std::uint32_t* const straddling = state.straddling.room(64 * words + kRoomBehind);
     const State::Found found = state.ask(trees, mode, first_ids, inside, straddling);
     state.bits.assign(2 * words, 0);
     std::uint64_t *const seen = state.bits.data(), *const marked = seen + words;

@@ -2,7 +2,7 @@
 // A list that is made anew for each view.
 #pragma once
 #include <algorithm>
-#include <crofton/core/memory.hpp>
+#include <crofton/core/raw_buffer.hpp>
 #include <cstddef>
 #include <span>
 
@@ -14,10 +14,7 @@ class AnswerList {
   public:
     void clear() { size_ = 0; }
     // Room for as many more behind the end, to be written and then taken by grow().
-    [[nodiscard]] T* room(std::size_t count) {
-        if (size_ + count > values_.size()) values_.resize(size_ + count + values_.size() / 2);
-        return values_.data() + size_;
-    }
+    [[nodiscard]] T* room(std::size_t count) { return values_.room(size_ + count, size_) + size_; }
     void grow(std::size_t count) { size_ += count; }
     [[nodiscard]] T* extend(std::size_t count) {
         T* const to = room(count);
@@ -30,7 +27,7 @@ class AnswerList {
     [[nodiscard]] std::size_t size() const { return size_; }
 
   private:
-    Vector<T> values_;
+    RawBuffer<T> values_;
     std::size_t size_ = 0;
 };
 
