@@ -142,7 +142,9 @@ const TexturePyramid* MaterialColors::texture(const Json& reference) {
 
 void MaterialColors::apply(const Json* material, const std::vector<float>& uv, const std::vector<float>& rgba,
                            const std::string& name, TriangleMesh& mesh) {
-    glm::vec3 factor = color_for_name(name);
+    // A primitive without a material is white, as the format says: by its name only if it has no colour at all.
+    const bool has_colors = rgba.size() == 4 * mesh.positions.size();
+    glm::vec3 factor = has_colors ? glm::vec3(1.0f) : color_for_name(name);
     const TexturePyramid* image = nullptr;
     if (material) {
         factor = glm::vec3(1.0f);
@@ -160,7 +162,7 @@ void MaterialColors::apply(const Json* material, const std::vector<float>& uv, c
         for (std::size_t v = 0; v < mesh.colors.size(); ++v)
             mesh.colors[v] *= image->sample({uv[2 * v], uv[2 * v + 1]}, 0.5f * widths[v]);
     }
-    if (rgba.size() == 4 * mesh.positions.size())
+    if (has_colors)
         for (std::size_t v = 0; v < mesh.colors.size(); ++v)
             for (int k = 0; k < 3; ++k) {
                 const float value = rgba[4 * v + static_cast<std::size_t>(k)];

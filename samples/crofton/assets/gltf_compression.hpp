@@ -19,8 +19,9 @@ namespace crofton::assets {
 [[nodiscard]] std::string why_compressed(std::string_view extension);
 
 // Replaces compressed views and primitives by plain ones, and removes the extensions' names where nothing is left of
-// them. What cannot be decoded is replaced by the uncompressed copy that the file holds for such readers. Without one
-// it stays; what is damaged gets a warning that names it. Errors: more bytes than the document's limit.
-[[nodiscard]] Result<void> decompress(GltfDocument& document);
+// them. With `plain_copies`, what cannot be decoded is replaced by the uncompressed copy that the file holds for such
+// readers. Otherwise it stays; what is damaged gets a warning that names it. Errors: more bytes than the document's
+// limit.
+[[nodiscard]] Result<void> decompress(GltfDocument& document, bool plain_copies);
 
 }  // namespace crofton::assets

@@ -93,6 +93,10 @@ Result<Json> parse_json(std::string_view text) {
     if (version->get_ref<const std::string&>().substr(0, 2) != "2.")
         return fail(ErrorCode::unsupported, kNoItem,
                     "glTF version " + version->get_ref<const std::string&>() + ", where 2 is needed");
+    const Json* least = member(*asset, "minVersion");
+    if (least && least->is_string() && least->get_ref<const std::string&>() != "2.0")
+        return fail(ErrorCode::unsupported, kNoItem,
+                    "needs a reader of glTF version " + least->get_ref<const std::string&>() + "; this one reads 2.0");
     return root;
 }
 

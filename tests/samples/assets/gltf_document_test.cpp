@@ -68,6 +68,8 @@ TEST_SUITE("assets/gltf_document") {
                    "a number beyond the range of double, at byte 45"));
         CHECK(says(message("a.gltf", "[]"), "asset.version"));
         CHECK(says(message("a.gltf", R"({"asset": {"version": "1.0"}})"), "version 1.0"));
+        CHECK(says(message("a.gltf", R"({"asset": {"version": "2.1", "minVersion": "2.1"}})"),
+                   "reader of glTF version 2.1"));
         CHECK(says(message("a.gltf", R"({"asset": {"version": "2.0"}, "extras": )" + std::string(1'000'000, '[')),
                    "deeper"));
     }

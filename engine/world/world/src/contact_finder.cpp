@@ -144,8 +144,13 @@ void ContactFinder::touch_triangles(const PosedTree& a, const PosedTree& b, Work
     const RigidTransform b_to_a = relative(a.pose, b.pose);
     mesh::contacts(*a.tree, *b.tree, b_to_a, worker.found);
     touch.hit = !worker.found.empty();
-    if (!touch.hit && options_.containment) {
-        touch.inside = mesh::containment_of_disjoint(*a.tree, *b.tree, b_to_a);
+    if (!touch.hit && (options_.containment || a.is_solid || b.is_solid)) {
+        const mesh::Containment inside = mesh::containment_of_disjoint(*a.tree, *b.tree, b_to_a);
+        // A bound is solid in any case, a mesh only as the option says.
+        const bool counts = inside == mesh::Containment::a_inside_b   ? b.is_solid
+                            : inside == mesh::Containment::b_inside_a ? a.is_solid
+                                                                      : inside == mesh::Containment::partly;
+        if (options_.containment || counts) touch.inside = inside;
         touch.hit = touch.inside != mesh::Containment::none;
     }
     if (!touch.hit) return;

@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "contact_list.hpp"
 #include "pair_order.hpp"
 #include "world_state.hpp"
 
@@ -120,11 +121,7 @@ void Ground::merge_contacts(std::span<const Contact> found) {
         contact.points = {points_.data() + touch.first_point, touch.point_count};
     }
     for (; old < before_.size(); ++old) add_ended(before_[old]);
-    all_contacts_.resize(found.size() + own.size());
-    std::merge(found.begin(), found.end(), own.begin(), own.end(), all_contacts_.begin(),
-               [](const Contact& a, const Contact& b) {
-                   return is_before({a.first, a.second}, {b.first, b.second});
-               });
+    world::merge_contacts(found, own, all_contacts_);
 }
 
 void Ground::stay() {

@@ -46,7 +46,7 @@ class Ground {
     [[nodiscard]] bool is_or_was_used() const { return is_used_ || was_used_; }
     void set_used(bool used) {
         was_used_ = is_used_;
-        is_used_ = used || !before_.empty();
+        is_used_ = used || !touching_.empty() || !before_.empty();
     }
 
   private:

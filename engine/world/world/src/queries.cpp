@@ -141,6 +141,20 @@ std::optional<ObjectHit> World::State::own_shape_hit(const Ray& ray, std::uint32
 
 namespace {
 
+// Of a mesh whose transform flattens it, which no ray in the mesh's frame can meet: asks all triangles.
+std::optional<mesh::TriangleHit> raycast_flat(const Ray& ray, const world::PlacedMesh& placed) {
+    std::optional<mesh::TriangleHit> nearest;
+    const std::span<const std::uint32_t> rejected = placed.mesh->tree.rejected();
+    for (std::uint32_t i = 0; i < placed.mesh->places.size(); ++i) {
+        if (std::binary_search(rejected.begin(), rejected.end(), i)) continue;
+        Triangle corners = placed.mesh->triangle(i);
+        for (glm::dvec3& corner : corners) corner = *placed.linear * corner + placed.translation;
+        const auto t = mesh::raycast(ray, corners);
+        if (t && (!nearest || *t < nearest->t)) nearest = mesh::TriangleHit{*t, i};
+    }
+    return nearest;
+}
+
 // Of an object with a bound, whose box the ray meets at `box_t`.
 std::optional<ObjectHit> bound_hit(const Ray& ray, const ObjectRef& ref, const world::Object& object, const Obb& box,
                                    double box_t) {
@@ -173,20 +187,18 @@ std::optional<ObjectHit> World::State::shape_hit(const Ray& ray, std::uint32_t i
     if (placed.mesh == nullptr)
         return world::is_region_index(id) ? bound_hit(ray, ref, regions.object(id), regions.box(id), box_t)
                                           : bound_hit(ray, ref, table.objects[id], index.box(id), box_t);
-    ObjectHit hit{ref.object, ref.user, box_t};
-    if (const glm::dmat3& linear = *placed.linear; world::is_invertible(linear)) {
+    const glm::dmat3& linear = *placed.linear;
+    std::optional<mesh::TriangleHit> on_mesh;
+    if (world::is_invertible(linear)) {
         const glm::dmat3 inverse = glm::inverse(linear);
-        const auto on_mesh = mesh::raycast(
-            Ray{inverse * (ray.origin - placed.translation), inverse * ray.direction, ray.max_t}, placed.mesh->tree);
-        if (!on_mesh) return std::nullopt;
-        hit.t = on_mesh->t;
-        hit.triangle = on_mesh->triangle;
-        hit.normal = world::normal_of(ray, placed.mesh->triangle(on_mesh->triangle), linear);
+        on_mesh = mesh::raycast(Ray{inverse * (ray.origin - placed.translation), inverse * ray.direction, ray.max_t},
+                                placed.mesh->tree);
     } else {
-        hit.normal = world::normal_of(ray, box_of_object(id), box_t);
+        on_mesh = raycast_flat(ray, placed);
     }
-    hit.point = ray.origin + hit.t * ray.direction;
-    hit.started_inside = hit.normal == glm::dvec3(0.0);
+    if (!on_mesh) return std::nullopt;
+    ObjectHit hit{ref.object, ref.user, on_mesh->t, ray.origin + on_mesh->t * ray.direction, on_mesh->triangle};
+    hit.normal = world::normal_of(ray, placed.mesh->triangle(on_mesh->triangle), linear);
     return hit;
 }
 
@@ -196,9 +208,12 @@ std::optional<ObjectHit> World::raycast(const Ray& ray, std::uint32_t layers) co
     Ray rest = even.ray;
     state_->visit_along(even.ray, layers, [&](std::uint32_t object, double t) {
         const auto hit = state_->shape_hit(rest, object, t);
-        if (hit && (!nearest || hit->t < nearest->t || object < nearest->object.index)) {
+        const bool is_nearer =
+            hit && (!nearest || hit->t < nearest->t || (hit->t == nearest->t && object < nearest->object.index));
+        if (is_nearer) {
             nearest = hit;
-            rest.max_t = hit->t;
+            // What lies as far, but for the rounding of t, is asked too: as raycast_all() orders them.
+            rest.max_t = std::min(even.ray.max_t, hit->t * (1.0 + 0x1p-40));
         }
         return rest.max_t;
     });
@@ -223,10 +238,10 @@ void World::raycast_all(const Ray& ray, Vector<ObjectHit>& hits, std::uint32_t l
         if (const auto hit = state_->shape_hit(even.ray, object, t)) hits.push_back(*hit);
         return even.ray.max_t;
     });
-    for (ObjectHit& hit : hits) even.restore(hit);
     std::sort(hits.begin(), hits.end(), [](const ObjectHit& a, const ObjectHit& b) {
         return a.t != b.t ? a.t < b.t : a.object.index < b.object.index;
     });
+    for (ObjectHit& hit : hits) even.restore(hit);  // the caller's t may be infinite: order is by the point
 }
 
 void World::State::visit_near(const Aabb& bounds, double distance, std::uint32_t layers,

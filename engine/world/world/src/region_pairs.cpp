@@ -220,6 +220,7 @@ void World::State::touch_in_region(std::uint32_t id, std::uint32_t other, world:
         if (world::is_rotation(axes)) other_mesh.pose.rotation = axes;
         other_mesh.tree = region_pairs.tree_under(handle, world::is_rotation(axes) ? glm::dmat3(1.0) : axes,
                                                   [&] { return world::box_mesh(other_box.half_extents); });
+        other_mesh.is_solid = true;
     }
     finder.touch_trees(object, mesh, of_region, other_mesh, touch);
 }

@@ -204,7 +204,7 @@ PosedTree Shapes::posed_tree(const ObjectTable& table, const SpatialIndex& index
     if (!tree) {
         const Obb& box = index.box(id);
         const glm::dmat3 axes(box.axes);
-        return {own(), {is_rotation(axes) ? axes : glm::dmat3(1.0), box.center}};
+        return {own(), {is_rotation(axes) ? axes : glm::dmat3(1.0), box.center}, true};
     }
     const Transform& world = scene.world(scene.node_of(object.instance));
     if (is_rotation(world.linear)) return {tree, {world.linear, world.translation}};

@@ -16,6 +16,7 @@ namespace crofton::world {
 struct PosedTree {
     const mesh::MeshTree* tree = nullptr;  // none: no valid triangle
     RigidTransform pose;
+    bool is_solid = false;  // the triangles are those of a bound
 };
 
 // A mesh as queries ask it.

@@ -62,7 +62,8 @@ typedef struct crofton_world_options {
 /* As of the last update. */
 typedef struct crofton_world_statistics {
     size_t size;
-    uint64_t objects, resting, moving; /* not hidden */
+    uint64_t objects;         /* all, hidden ones too */
+    uint64_t resting, moving; /* none that is hidden or in no layer */
     uint64_t box_pairs_tested, contact_pairs_tested;
     uint32_t boxes_changed, nodes_updated;
     uint32_t out_of_range; /* objects whose product of transforms is out of range: hidden until it is valid */

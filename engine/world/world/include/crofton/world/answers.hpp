@@ -223,7 +223,7 @@ struct ObjectPair {
 enum class ContactPhase : std::uint8_t { began, stayed, ended };
 
 // Two objects that touch, or that touched in the update before. Ended contacts have only the two objects, whose handles
-// are stale if the objects were removed.
+// are stale if the objects were removed. A contact goes on if its objects gain or lose shapes.
 //
 // Two objects with shapes also touch if they come within WorldOptions::contact_margin. Their points persist from update
 // to update: a point keeps its `memory`, which you may write, while its id stays the same (crofton/convex/query.hpp).

@@ -41,7 +41,7 @@ struct TraceHooks {
 struct WorldOptions {
     bool pairs = true;            // false: update() finds neither pairs nor contacts
     bool contacts = true;         // false: update() finds pairs only
-    bool containment = true;      // counts an object inside a closed mesh as a contact
+    bool containment = true;      // counts an object inside a closed mesh as a contact; boxes and spheres are solid
     double contact_margin = 0.0;  // ≥ 0: gaps up to this between shapes are contacts
     bool mesh_depth = false;      // computes depths of contacts between meshes; takes longer than finding them
     std::size_t max_pairs = std::size_t{1} << 24;  // update() fails if there are more, so that memory stays bounded
@@ -56,9 +56,10 @@ struct WorldOptions {
 
 // As of the last update.
 struct WorldStatistics {
-    std::size_t objects = 0, resting = 0, moving = 0;  // not hidden; resting in the tree, moving in the list
-    std::uint32_t boxes_changed = 0;                   // in this update; includes meshes that moved within their boxes
-    bool tree_built = false;                           // built in one go: a scene was loaded, or much came to rest
+    std::size_t objects = 0;              // all, hidden ones too
+    std::size_t resting = 0, moving = 0;  // in the tree, in the list; none that is hidden or in no layer
+    std::uint32_t boxes_changed = 0;      // in this update; includes meshes that moved within their boxes
+    bool tree_built = false;              // built in one go: a scene was loaded, or much came to rest
     std::uint64_t box_pairs_tested = 0, contact_pairs_tested = 0;  // the second: pairs whose shapes were tested
     std::uint64_t shape_pairs_computed = 0;                        // in this update; none for resting objects
     collide::BatchStatistics box_tests;                            // how the pairs of boxes were decided
