@@ -165,6 +165,40 @@ TEST_SUITE("convex/parallel_sides") {
         CHECK(asked > 3000);
     }
 
+    // There the normal is nearly the face's, though the face holds nothing of the side.
+    TEST_CASE("a round side just outside a box's face has two points on the face's edge") {
+        RandomShapes random(6);
+        for (int i = 0; i < 2000; ++i) {
+            CAPTURE(i);
+            const bool cylinder = i % 2 == 0;
+            const float half = float(random.number(0.2, 1.0)), radius = float(random.number(0.1, 0.5));
+            const Shape side = cylinder ? Shape::cylinder(half, radius).value() : Shape::capsule(half, radius).value();
+            const glm::vec3 h(random.number(0.3, 1.0), random.number(0.3, 1.0), random.number(0.3, 1.0));
+            const Shape box = Shape::box(h).value();
+            // Beyond the face's edge at x = h.x; upright shapes, side by side.
+            const double off = std::pow(10.0, -random.number(cylinder ? 6.0 : 9.0, 12.0)), y = random.number(-0.8, 0.8),
+                         depth = random.number(0.0, 0.2 * double(radius));
+            const RigidTransform frame{random.rotation(), 10.0 * random.direction()};
+            const auto placed = [&](const glm::dvec3& p) {
+                return RigidTransform{frame.rotation, frame.rotation * p + frame.translation};
+            };
+            const RigidTransform pose = placed({double(h.x) + off, y, double(h.z) + double(radius) - depth});
+            const Manifold m = contact_manifold({box, frame}, {side, pose});
+            const double low = std::max(-double(h.y), y - double(half)), high = std::min(double(h.y), y + double(half));
+            if (high - low < depth + 0.01) continue;  // out over an end
+            CHECK(m.count == 2);
+            double told[2] = {HUGE_VAL, -HUGE_VAL};
+            for (int k = 0; k < m.count; ++k) {
+                const glm::dvec3 p = glm::transpose(frame.rotation) * (m.points[k].position - frame.translation);
+                told[0] = std::min(told[0], p.y), told[1] = std::max(told[1], p.y);
+                CHECK(std::abs(p.x - double(h.x)) <= 1e-5);
+                CHECK(std::abs(m.points[k].depth - depth) <= 1e-5);
+            }
+            CHECK(std::abs(told[0] - low) <= 1e-5);
+            CHECK(std::abs(told[1] - high) <= 1e-5);
+        }
+    }
+
     TEST_CASE("capsules have two points up to two degrees and one beyond, whatever their size") {
         for (const double scale : {1e-6, 1e-3, 1.0, 1e3, 1e9})
             for (const double degrees : {1.5, 1.85, 1.99, 1.999, 2.001, 2.01, 2.5}) {

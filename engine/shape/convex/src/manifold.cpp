@@ -160,9 +160,12 @@ Manifold contact_manifold(const ShapeAtPose& a, const ShapeAtPose& b, const Mani
     GatheredPoints points;
     Gatherer gatherer(gathering_of(a, b, pair.size, options.margin), touch, points);
     const bool round = pair.rounding() > 0.0 || !pair.has_polytope_cores();
-    const bool at_edges = round && gather_parallel_edges({&a, patch_a}, {&b, patch_b}, touch.normal, a.pose.translation,
-                                                         pair.size, clipped, gatherer);
-    const int reference = at_edges ? 0 : gather_patches(patch_a, patch_b, touch.normal, clipped, gatherer);
+    const auto lies_along = [&](bool off_face) {
+        return round && gather_parallel_edges({&a, patch_a}, {&b, patch_b}, touch.normal, a.pose.translation, pair.size,
+                                              clipped, gatherer, off_face);
+    };
+    int reference = lies_along(false) ? 0 : gather_patches(patch_a, patch_b, touch.normal, clipped, gatherer);
+    if (reference != 0 && points.count == 0 && lies_along(true)) reference = 0;
     if (cache != nullptr) {
         const Patch& patch = reference == 2 ? patch_b : patch_a;
         const bool across = std::abs(glm::dot(patch.normal, touch.normal)) > 1.0 - 1e-8;

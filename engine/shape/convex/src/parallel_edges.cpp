@@ -28,12 +28,13 @@ double flat_sine(const PatchOf& a, const PatchOf& b) {
     return std::max(of(a), of(b));
 }
 
-// Whether it touches with what is no edge: a face across the normal, a rim, a point.
+// Whether it touches with what is no edge: a face across the normal up to a sine, if that is not negative; a rim, a
+// point.
 bool has_no_edge(const PatchOf& side, const glm::dvec3& normal, double flat) {
     if (side.patch.count < 3) return side.patch.count < 2;
     if (side.shape != nullptr && !side.shape->shape.has_polytope_core()) return true;
     const glm::dvec3 across = glm::cross(side.patch.normal, normal);
-    return side.patch.normal != glm::dvec3(0.0) && glm::dot(across, across) <= flat * flat;
+    return side.patch.normal != glm::dvec3(0.0) && flat >= 0.0 && glm::dot(across, across) <= flat * flat;
 }
 
 // The edges that have an end farthest along `outward`, but for `tolerance`.
@@ -99,9 +100,9 @@ void set_patch(const Edge& edge, Patch& patch) {
 }  // namespace
 
 bool gather_parallel_edges(const PatchOf& a, const PatchOf& b, const glm::dvec3& normal, const glm::dvec3& origin,
-                           double size, Clipped& clipped, Gatherer& gatherer) {
-    const double flat = flat_sine(a, b), tolerance = 1e-9 * size;
-    if (has_no_edge(a, normal, flat) || has_no_edge(b, normal, flat)) return false;
+                           double size, Clipped& clipped, Gatherer& gatherer, bool off_face) {
+    const double flat = flat_sine(a, b), tolerance = 1e-9 * size, face = off_face ? -1.0 : flat;
+    if (has_no_edge(a, normal, face) || has_no_edge(b, normal, face)) return false;
     // Of all pairs the one most nearly parallel and across the normal.
     Edge of_a, of_b;
     double least = HUGE_VAL;
@@ -109,6 +110,10 @@ bool gather_parallel_edges(const PatchOf& a, const PatchOf& b, const glm::dvec3&
         const glm::dvec3 u = e.to - e.from;
         for_each_edge(b, -normal, origin, tolerance, [&](const Edge& f) {
             const glm::dvec3 v = f.to - f.from;
+            // All parallel edges of the face are as far along the normal: one of them is beside the side.
+            if (off_face &&
+                squared(glm::dot(f.from - e.from, glm::cross(u, normal))) > 1e-8 * squared(u) * squared(size))
+                return;
             const double sine2 = squared(glm::cross(u, v)) / (squared(u) * squared(v));
             const double slopes = squared(glm::dot(u, normal)) / squared(u) + squared(glm::dot(v, normal)) / squared(v);
             if (!(sine2 <= kSine * kSine && slopes <= 2.0 * kSine * kSine && sine2 + slopes < least)) return;

@@ -13,9 +13,10 @@ struct PatchOf {
 
 // Adds the ends of the stretch that two straight sides or edges have in common with which the shapes touch, where these
 // are parallel within 2 degrees. Of a sharp edge: where they lie on each other. Returns false, and adds nothing, where
-// there are none such, and where a shape touches with a face: that is clipped. `normal` is from a to b, points are
-// around `origin`, `size` is that of the pair.
+// there are none such, and where a shape touches with a face: that is clipped. `off_face`: it was, and the other's side
+// passes outside of it, by no more than the normal is off. `normal` is from a to b, points are around `origin`, `size`
+// is that of the pair.
 bool gather_parallel_edges(const PatchOf& a, const PatchOf& b, const glm::dvec3& normal, const glm::dvec3& origin,
-                           double size, Clipped& clipped, Gatherer& gatherer);
+                           double size, Clipped& clipped, Gatherer& gatherer, bool off_face = false);
 
 }  // namespace crofton::convex
