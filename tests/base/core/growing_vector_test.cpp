@@ -75,6 +75,16 @@ TEST_SUITE("core/growing_vector") {
         CHECK(growing[499'999] == 399'999);
     }
 
+    TEST_CASE("many elements that are appended at once take room for a 16th more") {
+        const crofton::testing::CountingMemory memory;
+        GrowingVector<std::uint64_t> growing;
+        growing.append(100'000, 1);
+        const std::size_t taken = memory.bytes_taken();
+        for (std::uint64_t i = 0; i < 2900; ++i) growing.append(i);
+        CHECK(memory.bytes_taken() == taken);
+        CHECK(memory.bytes_in_use() < 107'000 * sizeof(std::uint64_t));
+    }
+
     TEST_CASE("a growing vector that nothing is appended to any more gives the spare memory back") {
         const crofton::testing::CountingMemory memory;
         GrowingVector<std::uint64_t> growing;

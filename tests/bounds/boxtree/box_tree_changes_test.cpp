@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 #include <hwy/targets.h>
 #include <algorithm>
+#include <cmath>
 #include <counting_memory.hpp>
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/boxtree/rebuilder.hpp>
@@ -246,6 +247,30 @@ TEST_SUITE("boxtree/box_tree changes") {
         }
         CHECK(stored[0] == stored[1]);
         CHECK(!BoxTree::build(crowd.boxes, {.room = std::size_t{1} << 30}).has_value());
+    }
+
+    TEST_CASE("an item that splits a full leaf joins the half that is nearer") {
+        for (const double at : {0.5, 100.5})
+            for (const bool swapped : {false, true}) {
+                std::vector<Obb> boxes(16);
+                for (std::size_t i = 0; i < boxes.size(); ++i) {
+                    boxes[i].center = {((i < 8) != swapped ? 0.0 : 100.0) + 0.1 * static_cast<double>(i % 8), 0.0, 0.0};
+                    boxes[i].half_extents = glm::vec3(0.05f);
+                }
+                BoxTree tree = *BoxTree::build(boxes);
+                Obb more = boxes[0];
+                more.center.x = at;
+                const std::uint32_t item = tree.insert(more).value();
+                const boxtree::Structure& structure = tree.structure();
+                const std::uint32_t leaf = structure.slot_of(item) / boxtree::kWidth;
+                CHECK(structure.leaves()[leaf].count == 9);
+                for (std::uint32_t lane = 0; lane < structure.leaves()[leaf].count; ++lane) {
+                    const ItemId near = structure.slot_items()[leaf * boxtree::kWidth + lane];
+                    CHECK(std::abs(tree.boxes()[near].center.x - at) < 1.0);
+                }
+                CHECK(tree.validate().has_value());
+                CHECK(holds_all(tree));
+            }
     }
 
     TEST_CASE("a step without bounds completes a rebuild, wherever it has come to") {

@@ -7,6 +7,7 @@
 #include <crofton/core/executor.hpp>
 #include <crofton/cull/bound_set.hpp>
 #include <crofton/cull/list_layout.hpp>
+#include <crofton/geometry/same_bits.hpp>
 #include <cstring>
 #include <error_of.hpp>
 #include <limits>
@@ -310,6 +311,7 @@ TEST_SUITE("cull/moving_boxes") {
                     const auto stage = [&](std::size_t first, std::size_t size) {
                         std::vector<std::uint32_t> entries(size);
                         std::vector<Obb> boxes(size);
+                        std::vector<std::uint8_t> differs(next.size(), 2);
                         for (std::size_t k = 0; k < size; ++k) {
                             entries[k] = static_cast<std::uint32_t>(first + k);
                             next[first + k] = boxes[k] =
@@ -318,7 +320,9 @@ TEST_SUITE("cull/moving_boxes") {
                         for (std::size_t done = 0; done < size; ++done) {
                             const auto rest = std::span(entries).subspan(done);
                             const std::size_t taken =
-                                told.moving.stage(rest, &boxes[done], sizeof(Obb), told.boxes.data());
+                                told.moving.stage(rest, &boxes[done], sizeof(Obb), told.boxes.data(), differs.data());
+                            for (std::size_t k = done; k < done + taken; ++k)
+                                REQUIRE(differs[entries[k]] == !have_same_bits(boxes[k], told.boxes[entries[k]]));
                             REQUIRE(plain.moving.stage(rest, &boxes[done], sizeof(Obb)) == taken);
                             done += taken;
                             if (done == size) break;

@@ -3,6 +3,8 @@
 #include <doctest/doctest.h>
 #include <algorithm>
 #include <counting_memory.hpp>
+#include <crofton/boxtree/box_tree.hpp>
+#include <crofton/boxtree/rebuilder.hpp>
 #include <crofton/convex/query.hpp>
 #include <crofton/crofton.hpp>
 #include <crofton/geometry/same_bits.hpp>
@@ -222,6 +224,31 @@ TEST_SUITE("world/storage") {
             }
             CHECK(good);
         }
+    }
+
+    TEST_CASE("while something comes or goes now and then, the tree is rebuilt once a 16th of it has") {
+        World world({.pairs = false});
+        NearMisses random(66);
+        std::vector<ObjectHandle> objects;
+        for (int i = 0; i < 4000; ++i)
+            objects.push_back(world.add({.bound = oracle::random_box(random, {}, 100.0)}).value());
+        for (int update = 0; update < 30; ++update) REQUIRE(world.update().has_value());
+        // Each of the two calls changes one item of the tree, in one of two updates or three.
+        int changes = 0, first = 0;
+        const auto update = [&] {
+            REQUIRE(world.update().has_value());
+            const boxtree::RebuildStep& step = world.tree().rebuilder().last_step();
+            if (first == 0 && step.items_added > 0) first = changes;
+        };
+        for (std::size_t n = 0; n < 400; ++n) {
+            REQUIRE(world.set_hidden(objects[n], true).has_value());
+            ++changes, update();
+            REQUIRE(world.set_hidden(objects[n], false).has_value());
+            ++changes, update();
+            if (n % 2 == 0) update();
+        }
+        CHECK(first >= 4000 / 16);
+        CHECK(first < 4000 / 16 + 10);
     }
 
     TEST_CASE("the tree is right while many come and go and it is rebuilt in the background") {

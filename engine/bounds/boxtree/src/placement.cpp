@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "placement.hpp"
 
+#include <hwy/cache_control.h>
 #include <algorithm>
 #include <array>
 #include <crofton/boxtree/radius_range.hpp>
@@ -40,8 +41,8 @@ void Placement::vacate(ItemId item) {
 
 void Placement::place(ItemId item) {
     if (nodes_[0].count == 0) add_child(0, add_leaf() | kLeafBit);
-    LeafId l = best_leaf(structure_.items_.boxes()[item]);
-    if (leaves_[l].count == kWidth) split_leaf(l);  // half of its lanes are free then
+    const LeafId l = best_leaf(structure_.items_.boxes()[item]);
+    if (leaves_[l].count == kWidth) return split_leaf(l, item);
     Leaf& leaf = leaves_.edit(l);
     const std::uint32_t slot = l * kWidth + leaf.count++;
     structure_.leaf_counts_[l] = static_cast<std::uint8_t>(leaf.count);
@@ -130,7 +131,7 @@ LeafId Placement::best_leaf(const Obb& box) const {
 LeafId Placement::empty_leaf_of(NodeId parent) const {
     const Node& node = nodes_[parent];
     for (unsigned lane = 0; lane < node.count; ++lane)
-        if ((node.child[lane] & kLeafBit) != 0 && leaves_[node.child[lane] & ~kLeafBit].count == 0)
+        if ((node.child[lane] & kLeafBit) != 0 && structure_.leaf_counts_[node.child[lane] & ~kLeafBit] == 0)
             return node.child[lane] & ~kLeafBit;
     return kNone;
 }
@@ -151,29 +152,57 @@ LeafId Placement::free_leaf() {
     return l;
 }
 
-// Moves half of a full leaf's items to a new leaf next to it.
-void Placement::split_leaf(LeafId l) {
-    BuildItem items[kWidth];
+// Asks the memory for what making a leaf of these items needs.
+void Placement::fetch_items(const ItemId* items) const {
     for (unsigned lane = 0; lane < kWidth; ++lane) {
-        const ItemId item = structure_.slot_items_[l * kWidth + lane];
+        const char* const box = reinterpret_cast<const char*>(&structure_.items_.boxes()[items[lane]]);
+        hwy::Prefetch(box);
+        hwy::Prefetch(box + sizeof(Obb) - 1);
+        hwy::Prefetch(&structure_.items_.layer_masks()[items[lane]]);
+        hwy::Prefetch(&structure_.item_slots_[items[lane]]);
+    }
+}
+
+// Moves half of a full leaf's items to a new leaf next to it, with one more item: the half whose centres it spreads
+// less.
+void Placement::split_leaf(LeafId l, ItemId more) {
+    fetch_items(&structure_.slot_items_[l * kWidth]);
+    BuildItem items[kWidth];
+    const auto build_item = [&](ItemId item) {
         const Obb& box = structure_.items_.boxes()[item];
-        items[lane] = {};
+        BuildItem built{};
         for (int j = 0; j < 3; ++j) {
             const auto center = static_cast<float>(box.center[j] - leaves_[l].origin[j]);
-            items[lane].extreme[j] = -center;
-            items[lane].extreme[4 + j] = center;
+            built.extreme[j] = -center;
+            built.extreme[4 + j] = center;
         }
-        items[lane].set_id(item);
-    }
+        built.set_id(item);
+        return built;
+    };
+    for (unsigned lane = 0; lane < kWidth; ++lane) items[lane] = build_item(structure_.slot_items_[l * kWidth + lane]);
     halve(items);
+    const Cost cost(structure_.criterion_);
+    const BuildItem one_more = build_item(more);
+    double growths[2];
+    for (unsigned side = 0; side < 2; ++side) {
+        BuildItem half = kNothing;
+        for (unsigned i = 0; i < kWidth / 2; ++i) half.include(items[side * kWidth / 2 + i]);
+        growths[side] = -cost(half);
+        half.include(one_more);
+        growths[side] += cost(half);
+    }
     const NodeId parent = leaves_[l].parent;
     const LeafId empty = empty_leaf_of(parent), other = empty != kNone ? empty : free_leaf();
     const LeafId both[2] = {l, other};
+    const unsigned taker = growths[1] < growths[0] ? 1 : 0;
     for (unsigned side = 0; side < 2; ++side) {
-        ItemId ids[kWidth / 2];
+        ItemId ids[kWidth / 2 + 1];
         for (unsigned i = 0; i < kWidth / 2; ++i) ids[i] = items[side * kWidth / 2 + i].id();
-        make_leaf(both[side], ids, parent, leaves_[both[side]].lane_in_parent);
+        ids[kWidth / 2] = more;
+        const std::size_t count = kWidth / 2 + (side == taker ? 1 : 0);
+        make_leaf(both[side], {ids, count}, parent, leaves_[both[side]].lane_in_parent);
     }
+    invalidate_item_count(parent);
     if (empty == kNone) add_child(parent, other | kLeafBit);
     refresh_above_both(l | kLeafBit, other | kLeafBit);
 }
@@ -331,10 +360,10 @@ void Placement::refresh_above(std::uint32_t first) {
 }
 
 // The same above both halves of what has been split. Below one node the first needs its lane alone: the second's, which
-// was empty, changes that node, so that its path continues.
+// was empty, changes that node, so that its path continues. Bounds along other axes take in either half by itself.
 void Placement::refresh_above_both(std::uint32_t first, std::uint32_t second) {
     const Place place = place_of(first);
-    if (place.node != place_of(second).node) {
+    if (place.node != place_of(second).node || structure_.axes_.size() > 1) {
         refresh_above(first);
     } else {
         if (!write_path_lane(place, first, first)) structure_.refresh_bounds(place.node);

@@ -28,7 +28,8 @@ class Placement {
     LeafId add_leaf();
     [[nodiscard]] LeafId empty_leaf_of(NodeId parent) const;
     [[nodiscard]] LeafId free_leaf();
-    void split_leaf(LeafId l);
+    void fetch_items(const ItemId* items) const;
+    void split_leaf(LeafId l, ItemId more);
     void make_leaf(LeafId l, std::span<const ItemId> items, NodeId parent, std::uint32_t lane_in_parent);
     void add_child(NodeId parent, std::uint32_t child);
     void remove_child(NodeId parent, unsigned lane);

@@ -46,8 +46,8 @@ Aabb Structure::bounds_below(std::uint32_t child, std::uint32_t axes) const {
 }
 
 void Structure::make_room(const Topology& topology, std::size_t more_items) {
-    // An insertion may split a leaf; leaves that have been split take eight more.
-    const std::size_t leaves = std::min(more_items, more_items / kWidth + kWidth);
+    // An insertion into a full leaf splits it: of the first ones most, later few.
+    const std::size_t leaves = std::min(more_items, more_items / 8 + kWidth);
     reserve(topology.nodes.size() + leaves / 2, topology.leaves.size() + leaves);
     item_slots_.reserve(items_.size() + more_items);
     height_ = topology.height;

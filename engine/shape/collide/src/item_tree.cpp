@@ -141,7 +141,7 @@ struct SplitKeys {
 };
 
 // Blocks that are made at once get room for a part more: each insertion into a full leaf makes one.
-constexpr std::size_t kRoomPart = 16;
+constexpr std::size_t kRoomPart = 12;
 
 // Grows the room by an eighth: what is loaded and then changes a little does not double its memory.
 template <class T>

@@ -95,6 +95,11 @@ struct Scene::State {
     Vector<UpdateWorker> workers;
     BitSet sorter;
 
+    // Whether an update would find nothing, as the last one has.
+    [[nodiscard]] bool is_at_rest() const {
+        return !dirty.may_hold_any() && !touched.may_hold_any() && removed_since_update.empty() && moved.empty() &&
+               relayered.empty() && removed.empty();
+    }
     void mark_dirty(NodeId node) { dirty.insert(nodes[node].position); }
     void append_to_order(NodeId node);
     void compact_order();

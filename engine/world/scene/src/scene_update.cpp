@@ -65,6 +65,7 @@ void prefetch(const T& object) {
 
 UpdateStatistics Scene::update(Executor& executor) {
     State& s = *state_;
+    if (s.is_at_rest()) return {};
     s.workers.resize(std::max<std::size_t>(s.workers.size(), executor.concurrency()));
     UpdateStatistics statistics;
     s.update_nodes(executor, statistics);

@@ -38,29 +38,27 @@ void MovingList::remove(std::size_t entry) {
 void MovingList::keep(std::span<const std::uint32_t> entries, const Obb* first, std::size_t stride, std::uint32_t now) {
     if (entries.empty()) return;
     // In registers: what is written below might be them.
-    const Obb* const boxes = boxes_.data();
     Obb* const staged = staged_boxes_.data();
     std::uint32_t* const staged_for = staged_for_.data();
-    std::uint8_t* const differs = differs_.data();
+    const std::uint8_t* const differs = differs_.data();
     const auto box_at = [first, stride](std::size_t i) -> const Obb& {
         return *reinterpret_cast<const Obb*>(reinterpret_cast<const std::byte*>(first) + i * stride);
     };
-    std::size_t fresh = 0, differing = 0;
+    std::uint32_t fresh = 0, differing = 0;
     if (are_consecutive(entries)) {  // the same in plain loops, at the speed of memory
         const std::size_t begin = entries[0], count = entries.size();
         if (stride == sizeof(Obb))
             std::copy_n(first, count, staged + begin);
         else
             for (std::size_t i = 0; i < count; ++i) staged[begin + i] = box_at(i);
-        for (std::size_t i = 0; i < count; ++i)
-            differing += differs[begin + i] = !have_same_bits(boxes[begin + i], box_at(i));
+        for (std::size_t i = 0; i < count; ++i) differing += differs[begin + i];
         for (std::size_t i = 0; i < count; ++i) fresh += staged_for[begin + i] != now;
         std::fill_n(staged_for + begin, count, now);
     } else {
         for (std::size_t i = 0; i < entries.size(); ++i) {
             const std::uint32_t entry = entries[i];
             staged[entry] = box_at(i);
-            differing += differs[entry] = !have_same_bits(boxes[entry], box_at(i));
+            differing += differs[entry];
             fresh += staged_for[entry] != now;
             staged_for[entry] = now;
         }

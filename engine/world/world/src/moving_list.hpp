@@ -39,12 +39,13 @@ class MovingList {
     void stage(std::size_t entry, const Obb& box, std::uint32_t now) {
         const auto only = static_cast<std::uint32_t>(entry);
         moving_boxes_.unstage(entry);
+        differs_[entry] = !have_same_bits(boxes_[entry], box);
         keep({&only, 1}, &box, sizeof box, now);
     }
     // Likewise many, whose boxes are `stride` bytes apart, up to the first that is not certainly valid. Returns how
     // many.
     std::size_t stage(std::span<const std::uint32_t> entries, const Obb* first, std::size_t stride, std::uint32_t now) {
-        const std::size_t count = moving_boxes_.stage(entries, first, stride, boxes_.data());
+        const std::size_t count = moving_boxes_.stage(entries, first, stride, boxes_.data(), differs_.data());
         keep(entries.first(count), first, stride, now);
         return count;
     }
@@ -57,6 +58,7 @@ class MovingList {
     void update(Executor& executor);
 
   private:
+    // Whether each differs is known.
     void keep(std::span<const std::uint32_t> entries, const Obb* first, std::size_t stride, std::uint32_t now);
 
     Vector<ItemId> items_;

@@ -6,6 +6,7 @@
 #include <crofton/core/memory.hpp>
 #include <crofton/world/answers.hpp>
 #include <crofton/world/inputs.hpp>
+#include <cstring>
 #include <span>
 
 #include "rigid.hpp"
@@ -123,7 +124,9 @@ class MoverTable {
         const Key* const keys = keys_.data();
         const std::size_t key_count = keys_.size();
         std::size_t count = 0;
-        for (std::size_t i = begin; i < end; ++i, ++count) {
+        if (const std::uint32_t first = first_in_row(handles, begin, end); first != kNoIndex)
+            for (; count < end - begin; ++count) entries[count] = first + static_cast<std::uint32_t>(count);
+        for (std::size_t i = begin + count; i < end; ++i, ++count) {
             const ObjectHandle handle = handles[i];
             if (handle.index >= key_count) break;
             const Key key = keys[handle.index];
@@ -138,7 +141,7 @@ class MoverTable {
     void set(ObjectHandle handle, std::uint32_t entry, const glm::vec3& least_half_extents) {
         if (entry == kNoIndex) return forget(handle.index);
         if (handle.index >= keys_.size()) resize(keys_, handle.index + std::size_t{1});
-        keys_[handle.index] = {handle.generation, entry};
+        keys_[handle.index] = {entry, handle.generation};
         if (entry >= least_.size() && least_half_extents.x >= 0.0f)
             resize(least_, entry + std::size_t{1}, kAnyHalfExtents);
         if (entry < least_.size()) least_[entry] = least_half_extents;
@@ -150,13 +153,37 @@ class MoverTable {
   private:
     static constexpr glm::vec3 kAnyHalfExtents{-1.0f};
 
+    // The entry of the first handle, where all are boxes in the list with consecutive indices and consecutive entries;
+    // else kNoIndex.
+    [[nodiscard]] std::uint32_t first_in_row(const Strided<ObjectHandle>& handles, std::size_t begin,
+                                             std::size_t end) const {
+        static_assert(sizeof(ObjectHandle) == 8 && sizeof(Key) == 8);
+        const std::size_t count = end - begin;
+        if (count == 0 || handles.stride() != sizeof(ObjectHandle)) return kNoIndex;
+        const std::uint32_t first = handles[begin].index;
+        if (first >= keys_.size() || count > keys_.size() - first) return kNoIndex;
+        const std::uint32_t entry = keys_[first].entry;
+        if (entry > kNoIndex - count) return kNoIndex;
+        // Without a branch a handle, and as whole words: vectors do it. A handle less its key is the index less the
+        // entry, which is that of the first, if generations agree.
+        const std::byte* const some = reinterpret_cast<const std::byte*>(&handles[begin]);
+        const std::byte* const keys = reinterpret_cast<const std::byte*>(&keys_[first]);
+        std::uint64_t differing = 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            std::uint64_t handle, key;
+            std::memcpy(&handle, some + 8 * i, 8);
+            std::memcpy(&key, keys + 8 * i, 8);
+            differing |= ((handle - key) ^ (std::uint64_t{first} - entry)) | ((handle ^ (first + i)) & 0xffffffffu);
+        }
+        return differing == 0 ? entry : kNoIndex;
+    }
     [[nodiscard]] static bool covers(const Obb& box, const glm::vec3& least) {
         if (least.x < 0.0f) return true;
         const glm::vec3& half = box.half_extents;
         return half.x >= least.x && half.y >= least.y && half.z >= least.z && is_clearly_rotation(glm::dmat3(box.axes));
     }
-    struct Key {
-        std::uint32_t generation = 0, entry = kNoIndex;
+    struct Key {  // as a handle
+        std::uint32_t entry = kNoIndex, generation = 0;
     };
     Vector<Key> keys_;         // by object, up to the last that has moved
     Vector<glm::vec3> least_;  // by entry, up to the last with a shape

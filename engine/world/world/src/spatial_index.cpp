@@ -30,6 +30,7 @@ constexpr std::size_t kFewItems = 64;
 // comes or goes any more, or has moved within it: what moves stays in its leaf, whose bound grows, and wears the tree
 // more.
 constexpr std::size_t kMembersToRebuild = 16, kMembersToRebuildAtRest = 64, kMovesToRebuild = 64;
+constexpr std::uint32_t kUpdatesAtRest = 16;  // without changes, until nothing is said to come or go any more
 // Work on the new tree for each change of the old one, for an item that comes, goes or moves: the cost of an update
 // follows its changes. Putting an item into the new tree is worth 80, another change 4, building it some 12 an item
 // (BoxTree::rebuild_step). Measured: docs/notes/world.md.
@@ -274,9 +275,10 @@ void SpatialIndex::rebuild_step(std::size_t budget) {
     else
         rebuild_work_ -= (rebuild_work_ - changes) / kBudgetFall;
     rebuild_work_ = std::min(kMostExtraWork, rebuild_work_);
+    quiet_updates_ = fresh.members() > 0 ? 0 : std::min(quiet_updates_ + 1, kUpdatesAtRest);
     if (budget == 0) return;
     if (!rebuilding_) {
-        const std::size_t part = fresh.members() > 0 ? kMembersToRebuild : kMembersToRebuildAtRest;
+        const std::size_t part = quiet_updates_ < kUpdatesAtRest ? kMembersToRebuild : kMembersToRebuildAtRest;
         const std::size_t worn = changed_in_tree_.members() * part + changed_in_tree_.moves * kMovesToRebuild;
         if (worn < tree_.item_count() || worn == 0) return;
         rebuilding_ = true;

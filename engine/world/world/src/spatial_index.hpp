@@ -192,8 +192,9 @@ class SpatialIndex {
     // In the tree, since the last rebuild began; of them those before the last update, and those when the one under way
     // began.
     Changed changed_in_tree_, changed_before_, changed_at_start_;
-    std::size_t rebuild_work_ = 0;   // that the changes of the last updates make necessary
-    std::uint32_t short_lived_ = 0;  // rises where items go that are young, falls where others do
+    std::size_t rebuild_work_ = 0;     // that the changes of the last updates make necessary
+    std::uint32_t short_lived_ = 0;    // rises where items go that are young, falls where others do
+    std::uint32_t quiet_updates_ = 0;  // since an item came into the tree or went, up to kUpdatesAtRest
     bool rebuilding_ = false, wants_refit_ = false;
     // Over the list's boxes; made when someone asks.
     mutable std::mutex mover_tree_mutex_;

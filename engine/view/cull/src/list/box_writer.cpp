@@ -4,7 +4,6 @@
 #include <hwy/cache_control.h>
 #include <algorithm>
 #include <cmath>
-#include <crofton/core/consecutive.hpp>
 #include <cstring>
 #include <limits>
 
@@ -30,6 +29,15 @@ constexpr std::size_t kBoxBytes = sizeof(Obb), kShapeBytes = 24;
 // Boxes whose centre, or whose chunk's origin, is beyond this are rejected. So all centres here are below 1e30.
 constexpr double kFarthest = 4e29;
 
+// NaN if it is too far for any box.
+HWY_INLINE double origin_of(const ListChunk& chunk, std::size_t j) {
+    const bool far = !(std::abs(chunk.origin[j]) <= kFarthest);
+    return far ? std::numeric_limits<double>::quiet_NaN() : chunk.origin[j];
+}
+HWY_INLINE float per_quantum_of(const ListChunk& chunk) {
+    return static_cast<float>(1.0 / chunk.quantum);  // exact, a power of two
+}
+
 // Sixteen boxes side by side, and the frames that they are to be written in.
 struct Boxes {
     alignas(64) double center[3][kSixteen];
@@ -48,11 +56,8 @@ struct Boxes {
         put_shape(lane, box);
     }
     HWY_INLINE void put_frame(std::size_t lane, const ListChunk& chunk) {
-        for (std::size_t j = 0; j < 3; ++j) {
-            const bool far = !(std::abs(chunk.origin[j]) <= kFarthest);
-            origin[j][lane] = far ? std::numeric_limits<double>::quiet_NaN() : chunk.origin[j];
-        }
-        per_quantum[lane] = static_cast<float>(1.0 / chunk.quantum);  // exact, a power of two
+        for (std::size_t j = 0; j < 3; ++j) origin[j][lane] = origin_of(chunk, j);
+        per_quantum[lane] = per_quantum_of(chunk);
     }
     HWY_INLINE void put_frame(const ListChunk& chunk) {  // of all lanes
         put_frame(0, chunk);
@@ -76,9 +81,6 @@ struct Written {
     HWY_INLINE void copy_record(std::size_t lane, BoxRecord& to) const {
         for (std::size_t q = 0; q < 2; ++q)
             std::memcpy(reinterpret_cast<unsigned char*>(&to) + 16 * q, record[q][lane], 16);
-    }
-    HWY_INLINE void copy_center(std::size_t lane, BoxRecord& to) const {
-        for (std::size_t j = 0; j < 3; ++j) to.center[j] = offset[j][lane];
     }
     HWY_INLINE void grow(std::size_t lane, ListChunk& chunk) const {
         for (std::size_t j = 0; j < 3; ++j) chunk.extent[j] = std::max(chunk.extent[j], std::abs(at[j][lane]));
@@ -180,41 +182,70 @@ HWY_INLINE void write(const Boxes& boxes, Written& to) {
     }
 }
 
-// Whether sixteen boxes have the same axes and half extents, bit for bit.
-HWY_INLINE bool have_same_shapes(const unsigned char* a, std::size_t stride, const unsigned char* b) {
-    const hn::CappedTag<std::uint64_t, 2> d;
+using DW = hn::CappedTag<std::uint64_t, 4>;
+constexpr std::size_t kBoxWords = kBoxBytes / 8, kCenterWords = kShapeBytes / 8;
+
+// Whether two boxes differ, bit for bit. Adds to `of_shapes` in which bits their axes and half extents do.
+HWY_INLINE bool differ(const unsigned char* a, const unsigned char* b, hn::Vec<DW>& of_shapes) {
+    static constexpr std::uint64_t kOfShape[2 * kCenterWords] = {0, 0, 0, ~0ull, ~0ull, ~0ull};
+    const DW d;
     const auto load = [&](const unsigned char* from)
                           HWY_ATTR { return hn::LoadU(d, reinterpret_cast<const std::uint64_t*>(from)); };
-    for (std::size_t lane = 0; lane < kSixteen;) {
-        auto differing = hn::Zero(d);
-        for (const std::size_t end = lane + 4; lane < end; ++lane, a += stride, b += kBoxBytes)
-            for (std::size_t byte = kShapeBytes; byte < kBoxBytes; byte += 8 * hn::Lanes(d))
-                differing = hn::Or(differing, hn::Xor(load(a + byte), load(b + byte)));
-        if (!hn::AllTrue(d, hn::Eq(differing, hn::Zero(d)))) return false;
+    auto any = hn::Zero(d);
+    for (std::size_t word = 0; word < kBoxWords; word += hn::Lanes(d)) {
+        const std::size_t at = std::min(word, kBoxWords - hn::Lanes(d));
+        const auto differing = hn::Xor(load(a + 8 * at), load(b + 8 * at));
+        any = hn::Or(any, differing);
+        of_shapes = hn::Or(of_shapes, at >= kCenterWords ? differing : hn::And(differing, hn::LoadU(d, kOfShape + at)));
     }
-    return true;
+    return !hn::AllTrue(d, hn::Eq(any, hn::Zero(d)));
 }
 
-// As write(), of boxes with the shapes that the block of rows was written for, but for what shapes alone decide. False
-// if one of the old rows is empty, or one of the new is to be.
-HWY_INLINE bool write_moved(const Boxes& boxes, const RowBlock& block, Written& to) {
+// Sixteen boxes beside those before: which differ, whether all have the same shapes, and centres from the origin.
+struct Moved {
+    alignas(64) float offset[kSixteen][4];  // loaded interleaved
+    std::uint8_t differs[kSixteen];
+    bool same_shapes;
+
+    HWY_INLINE void compare(const unsigned char* boxes, std::size_t stride, const unsigned char* before) {
+        auto of_shapes = hn::Zero(DW());
+        for (std::size_t lane = 0; lane < kSixteen; ++lane)
+            differs[lane] = differ(boxes + stride * lane, before + kBoxBytes * lane, of_shapes) ? 1 : 0;
+        same_shapes = hn::AllTrue(DW(), hn::Eq(of_shapes, hn::Zero(DW())));
+    }
+    HWY_INLINE void put_offset(std::size_t lane, const unsigned char* box, const double (&origin)[4]) {
+        const hn::CappedTag<double, 4> d;
+        if (hn::Lanes(d) == 4) {
+            const auto center =
+                hn::IfThenElseZero(hn::FirstN(d, 3), hn::LoadU(d, reinterpret_cast<const double*>(box)));
+            const hn::Rebind<float, decltype(d)> df;
+            hn::Store(hn::DemoteTo(df, hn::Sub(center, hn::LoadU(d, origin))), df, offset[lane]);
+            return;
+        }
+        double center[3];
+        std::memcpy(center, box, sizeof center);
+        for (std::size_t j = 0; j < 3; ++j) offset[lane][j] = static_cast<float>(center[j] - origin[j]);
+    }
+};
+
+// As write(), of boxes with the shapes that the block of rows was written for, but for what shapes alone decide. False,
+// and nothing is written but `to`, if one of the old rows is empty, or one of the new is to be.
+HWY_INLINE bool write_moved(const Moved& moved, float per_quantum, const RowBlock& block, Written& to) {
     const DF d;
     const DI di;
     const DU du;
-    write_offsets(boxes, to);
     bool good = true;
     for (std::size_t l = 0; l < kSixteen; l += hn::Lanes(d)) {
-        const VF offset[3] = {hn::Load(d, to.offset[0] + l), hn::Load(d, to.offset[1] + l),
-                              hn::Load(d, to.offset[2] + l)};
+        VF offset[3], unused;
+        hn::LoadInterleaved4(d, moved.offset[l], offset[0], offset[1], offset[2], unused);
         const VF sum = hn::Add(hn::Add(hn::Abs(offset[0]), hn::Abs(offset[1])), hn::Abs(offset[2]));
-        const VF l1_radius = hn::Mul(sum, hn::Set(d, 1.0f + 0x1p-20f)),
-                 per_quantum = hn::Load(d, boxes.per_quantum + l);
+        const VF l1_radius = hn::Mul(sum, hn::Set(d, 1.0f + 0x1p-20f));
         const VU zr = hn::LoadU(du, block.zr + l), radius = hn::ShiftRight<16>(zr);
         auto bounded = hn::And(hn::Le(l1_radius, hn::Set(d, static_cast<float>(kFarthest))),
                                hn::RebindMask(d, hn::Ne(radius, hn::Set(du, kUnboundedRadius))));
         VI whole[3];
         for (std::size_t j = 0; j < 3; ++j) {
-            const VF at = hn::Mul(offset[j], per_quantum);
+            const VF at = hn::Mul(offset[j], hn::Set(d, per_quantum));
             bounded = hn::And(bounded, hn::Le(hn::Abs(at), hn::Set(d, static_cast<float>(kMaxRowCoordinate))));
             whole[j] = hn::NearestInt(at);
             hn::Store(whole[j], di, to.at[j] + l);
@@ -257,6 +288,26 @@ struct Extremes {
         for (std::size_t j = 0; j < 3; ++j) chunk.extent[j] = std::max(chunk.extent[j], largest(DI(), at[j]));
         chunk.largest_radius = std::max(chunk.largest_radius, largest(DU(), radius));
         chunk.l1_radius = std::max(chunk.l1_radius, largest(DF(), l1_radius));
+    }
+};
+
+// The extremes of the blocks of one chunk after another.
+struct ChunkExtremes {
+    static constexpr std::size_t kNone = ~std::size_t{0};
+    ListChunk* chunks;
+    std::size_t chunk = kNone;
+    Extremes extremes = {};
+
+    HWY_INLINE void include(std::size_t of, const Written& written) {
+        if (of != chunk) {
+            flush();
+            chunk = of;
+        }
+        extremes.include(written);
+    }
+    HWY_INLINE void flush() {
+        if (chunk != kNone) extremes.grow(chunks[chunk]);
+        extremes = {};
     }
 };
 
@@ -364,97 +415,142 @@ struct Group {
     }
 };
 
-std::size_t write_strided(const unsigned char* all_boxes, std::size_t stride, const std::uint32_t* items,
-                          std::size_t count, ListChunk* chunks, RowBlock* rows, BoxRecord* records,
-                          const unsigned char* before, std::uint8_t* shapes) {
+// The boxes of items one after the other, and what they are compared with and written to.
+struct Target {
+    ListChunk* chunks;
+    RowBlock* rows;
+    BoxRecord* records;
+    const unsigned char* before;  // may be null; then the next are not read
+    std::uint8_t *shapes, *differs;
+};
+
+// The first whole blocks, while their rows were written for the shapes that the boxes have. Returns how many boxes.
+std::size_t write_moved_blocks(const unsigned char* boxes, std::size_t stride, std::size_t item, std::size_t count,
+                               const Target& to) {
+    Moved moved[2];  // in turn: a wide load right after narrow stores to the same bytes stalls
+    Written written;
+    ChunkExtremes extremes{to.chunks};
+    std::size_t framed = ChunkExtremes::kNone;  // the chunk whose frame is
+    double origin[4] = {};
+    float per_quantum[2];
+    const std::size_t end = count / kSixteen * kSixteen;
+    const auto is_written = [&](std::size_t first) {
+        return first < end && (to.shapes[(item + first) / kSixteen] & kShapesWritten) != 0;
+    };
+    const auto compare = [&](std::size_t first, std::size_t turn) HWY_ATTR {
+        const unsigned char* const some = boxes + stride * first;
+        moved[turn].compare(some, stride, to.before + kBoxBytes * (item + first));
+        if (const std::size_t chunk = (item + first) / kChunk; chunk != framed) {
+            framed = chunk;
+            for (std::size_t j = 0; j < 3; ++j) origin[j] = origin_of(to.chunks[chunk], j);
+        }
+        per_quantum[turn] = per_quantum_of(to.chunks[framed]);
+        for (std::size_t lane = 0; lane < kSixteen; ++lane) moved[turn].put_offset(lane, some + stride * lane, origin);
+    };
+    if (is_written(0)) compare(0, 0);
+    std::size_t first = 0;
+    for (std::size_t turn = 0; is_written(first); first += kSixteen, turn ^= 1) {
+        if (is_written(first + kSixteen)) compare(first + kSixteen, turn ^ 1);
+        const std::size_t block = (item + first) / kSixteen;
+        if (!moved[turn].same_shapes || !write_moved(moved[turn], per_quantum[turn], to.rows[block], written)) break;
+        extremes.include((item + first) / kChunk, written);
+        std::memcpy(to.rows[block].xy, written.xy, sizeof written.xy);
+        std::memcpy(to.rows[block].zr, written.zr, sizeof written.zr);
+        for (std::size_t lane = 0; lane < kSixteen; ++lane)
+            std::memcpy(to.records[item + first + lane].center, moved[turn].offset[lane], sizeof(BoxRecord::center));
+        std::memcpy(to.differs + item + first, moved[turn].differs, kSixteen);
+        to.shapes[block] = kShapesWritten | kShapesStay;
+    }
+    extremes.flush();
+    return first;
+}
+
+// Boxes of any items, up to the first that is not usable.
+std::size_t write_any(const unsigned char* all_boxes, std::size_t stride, const std::uint32_t* items, std::size_t count,
+                      bool in_order, const Target& to) {
     constexpr std::size_t kMixed = ~std::size_t{0};
     Boxes boxes[2];
     std::size_t framed[2] = {kMixed, kMixed};  // the chunk whose frame all lanes have
-    bool has_shapes[2];
-    const bool in_order = are_consecutive({items, count});
     const auto group_at = [&](std::size_t first) {
         return Group{items + first, std::min(kSixteen, count - first), in_order};
     };
     const auto put = [&](std::size_t turn, std::size_t first) HWY_ATTR {
         const Group group = group_at(first);
         const std::size_t frame = group.in_one_chunk() ? group.items[0] / kChunk : kMixed;
-        has_shapes[turn] = before == nullptr || (shapes[group.items[0] / kSixteen] & kShapesWritten) == 0;
-        has_shapes[turn] |= group.count < kSixteen;
-        if (has_shapes[turn])
-            for (std::size_t lane = 0; lane < kSixteen; ++lane)
-                boxes[turn].put(lane, all_boxes + stride * (first + std::min(lane, group.count - 1)));
-        else
-            for (std::size_t lane = 0; lane < kSixteen; ++lane)
-                boxes[turn].put_center(lane, all_boxes + stride * (first + lane));
+        for (std::size_t lane = 0; lane < kSixteen; ++lane)
+            boxes[turn].put(lane, all_boxes + stride * (first + std::min(lane, group.count - 1)));
         if (frame == kMixed)
             for (std::size_t lane = 0; lane < kSixteen; ++lane)
-                boxes[turn].put_frame(lane, chunks[group.item(lane) / kChunk]);
+                boxes[turn].put_frame(lane, to.chunks[group.item(lane) / kChunk]);
         else if (frame != framed[turn])
-            boxes[turn].put_frame(chunks[frame]);
+            boxes[turn].put_frame(to.chunks[frame]);
         framed[turn] = frame;
     };
     Written written;
-    Extremes extremes;                 // of whole blocks
-    std::size_t extremes_of = kMixed;  // the chunk
-    const auto flush = [&] {
-        if (extremes_of != kMixed) extremes.grow(chunks[extremes_of]);
-        extremes = {};
-    };
-    const auto include = [&](std::uint32_t item) HWY_ATTR {
-        if (item / kChunk != extremes_of) {
-            flush();
-            extremes_of = item / kChunk;
-        }
-        extremes.include(written);
-        RowBlock& block = rows[item / kSixteen];
-        std::memcpy(block.xy, written.xy, sizeof block.xy);
-        std::memcpy(block.zr, written.zr, sizeof block.zr);
-    };
+    Moved moved;
+    ChunkExtremes extremes{to.chunks};
     std::size_t done = 0;
     if (count > 0) put(0, 0);
     for (std::size_t first = 0, turn = 0; first < count; first += kSixteen, turn ^= 1) {
         if (first + kSixteen < count) put(turn ^ 1, first + kSixteen);
         const Group group = group_at(first);
-        const bool same_shapes =
-            before != nullptr && group.is_block() &&
-            have_same_shapes(all_boxes + stride * first, stride, before + kBoxBytes * group.items[0]);
-        if (same_shapes && (shapes[group.items[0] / kSixteen] & kShapesWritten) != 0 &&
-            write_moved(boxes[turn], rows[group.items[0] / kSixteen], written)) {
-            include(group.items[0]);
-            for (std::size_t lane = 0; lane < kSixteen; ++lane)
-                written.copy_center(lane, records[group.items[0] + lane]);
-            shapes[group.items[0] / kSixteen] = kShapesWritten | kShapesStay;
-            done += kSixteen;
-            continue;
-        }
-        for (std::size_t lane = 0; !has_shapes[turn] && lane < kSixteen; ++lane)
-            boxes[turn].put_shape(lane, all_boxes + stride * (first + lane));
         write(boxes[turn], written);
         const std::uint32_t unusable = ~written.usable & ((1u << group.count) - 1);
         if (unusable == 0 && group.is_block()) {
             const std::uint32_t item = group.items[0];
-            include(item);
-            for (std::size_t lane = 0; lane < kSixteen; ++lane) written.copy_record(lane, records[item + lane]);
-            if (before != nullptr) shapes[item / kSixteen] = same_shapes ? kShapesWritten | kShapesStay : 0;
+            RowBlock& block = to.rows[item / kSixteen];
+            extremes.include(item / kChunk, written);
+            std::memcpy(block.xy, written.xy, sizeof block.xy);
+            std::memcpy(block.zr, written.zr, sizeof block.zr);
+            for (std::size_t lane = 0; lane < kSixteen; ++lane) written.copy_record(lane, to.records[item + lane]);
+            if (to.before != nullptr) {
+                moved.compare(all_boxes + stride * first, stride, to.before + kBoxBytes * item);
+                std::memcpy(to.differs + item, moved.differs, kSixteen);
+                to.shapes[item / kSixteen] = moved.same_shapes ? kShapesWritten | kShapesStay : 0;
+            }
             done += kSixteen;
             continue;
         }
         const std::size_t usable = unusable ? hwy::Num0BitsBelowLS1Bit_Nonzero32(unusable) : group.count;
         for (std::size_t lane = 0; lane < usable; ++lane) {
             const std::uint32_t item = group.items[lane];
-            ListChunk& chunk = chunks[item / kChunk];
-            RowBlock& block = rows[item / kSixteen];
+            ListChunk& chunk = to.chunks[item / kChunk];
+            RowBlock& block = to.rows[item / kSixteen];
             block.xy[item % kSixteen] = written.xy[lane];
             block.zr[item % kSixteen] = written.zr[lane];
-            written.copy_record(lane, records[item]);
+            written.copy_record(lane, to.records[item]);
             written.grow(lane, chunk);
-            if (before != nullptr) shapes[item / kSixteen] = 0;
+            if (to.before == nullptr) continue;
+            auto of_shapes = hn::Zero(DW());
+            to.differs[item] =
+                differ(all_boxes + stride * (first + lane), to.before + kBoxBytes * item, of_shapes) ? 1 : 0;
+            to.shapes[item / kSixteen] = 0;
         }
         done += usable;
         if (unusable) break;
     }
-    flush();
+    extremes.flush();
     return done;
+}
+
+std::size_t write_strided(const unsigned char* boxes, std::size_t stride, const std::uint32_t* items, std::size_t count,
+                          bool in_order, ListChunk* chunks, RowBlock* rows, BoxRecord* records,
+                          const unsigned char* before, std::uint8_t* shapes, std::uint8_t* differs) {
+    const Target to{chunks, rows, records, before, shapes, differs};
+    if (before == nullptr || !in_order || count == 0 || items[0] % kSixteen != 0)
+        return write_any(boxes, stride, items, count, in_order, to);
+    for (std::size_t done = 0; done < count;) {
+        done += write_moved_blocks(boxes + stride * done, stride, items[done], count - done, to);
+        // What those blocks end at, and what follows that they cannot take either.
+        std::size_t end = std::min(done + kSixteen, count);
+        while (end < count && (count - end < kSixteen || (shapes[items[end] / kSixteen] & kShapesWritten) == 0))
+            end = std::min(end + kSixteen, count);
+        if (end == done) break;
+        const std::size_t written = write_any(boxes + stride * done, stride, items + done, end - done, true, to);
+        done += written;
+        if (done < end) return done;
+    }
+    return count;
 }
 
 }  // namespace
@@ -480,12 +576,12 @@ std::size_t write_boxes(const Obb* boxes, const std::uint32_t* items, std::size_
                                              records, rejected);
 }
 
-std::size_t write_strided_boxes(const Obb* first, std::size_t stride, const std::uint32_t* items, std::size_t count,
-                                ListChunk* chunks, RowBlock* rows, BoxRecord* records, const Obb* before,
-                                std::uint8_t* shapes) {
-    return HWY_DYNAMIC_DISPATCH(write_strided)(reinterpret_cast<const unsigned char*>(first), stride, items, count,
-                                               chunks, rows, records, reinterpret_cast<const unsigned char*>(before),
-                                               shapes);
+std::size_t write_strided_boxes(const Obb* first, std::size_t stride, std::span<const std::uint32_t> items,
+                                bool in_order, ListChunk* chunks, RowBlock* rows, BoxRecord* records, const Obb* before,
+                                std::uint8_t* shapes, std::uint8_t* differs) {
+    return HWY_DYNAMIC_DISPATCH(write_strided)(reinterpret_cast<const unsigned char*>(first), stride, items.data(),
+                                               items.size(), in_order, chunks, rows, records,
+                                               reinterpret_cast<const unsigned char*>(before), shapes, differs);
 }
 
 }  // namespace crofton::cull

@@ -5,6 +5,7 @@
 #include <crofton/geometry/box.hpp>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 namespace crofton::cull {
 
@@ -21,15 +22,16 @@ std::size_t write_boxes(const Obb* boxes, const std::uint32_t* items, std::size_
                         RowBlock* rows, BoxRecord* records, std::uint32_t* rejected);
 
 // Boxes `stride` bytes apart: the k-th is item items[k]'s, in any chunk. Stops before the first that write_boxes()
-// would reject, and returns how many it has written. Extents and L1 radii only grow; boxes out of frame are not
-// counted.
+// would reject, and returns how many it has written. `in_order`: the items are one after the other. Extents and L1
+// radii only grow; boxes out of frame are not counted.
 //
-// `before`, if given, are boxes by item; `shapes` then has a byte for each block of sixteen items. kShapesWritten: the
+// `before`, if given, are boxes by item; `differs` then has a byte for each item, which is set to 1 if its box differs
+// from that before, bit for bit, else to 0. `shapes` has one for each block of sixteen items. kShapesWritten: the
 // block's rows and records were written by this function, in the frames of `chunks`, from boxes with the axes and half
 // extents of `before`, so that only centres are written where these stay. kShapesStay: the last boxes have them too.
 inline constexpr std::uint8_t kShapesWritten = 1, kShapesStay = 2;
-std::size_t write_strided_boxes(const Obb* first, std::size_t stride, const std::uint32_t* items, std::size_t count,
-                                ListChunk* chunks, RowBlock* rows, BoxRecord* records, const Obb* before,
-                                std::uint8_t* shapes);
+std::size_t write_strided_boxes(const Obb* first, std::size_t stride, std::span<const std::uint32_t> items,
+                                bool in_order, ListChunk* chunks, RowBlock* rows, BoxRecord* records, const Obb* before,
+                                std::uint8_t* shapes, std::uint8_t* differs);
 
 }  // namespace crofton::cull

@@ -11,9 +11,9 @@
 namespace crofton::cull {
 namespace {
 
-// Sets the entries' bits. Most entries are consecutive.
-void mark(std::span<std::uint64_t> bits, std::span<const std::uint32_t> entries) {
-    if (!are_consecutive(entries)) {
+// Sets the entries' bits.
+void mark(std::span<std::uint64_t> bits, std::span<const std::uint32_t> entries, bool in_order) {
+    if (!in_order) {
         for (const std::uint32_t entry : entries) bits[entry / 64] |= std::uint64_t{1} << entry % 64;
         return;
     }
@@ -43,14 +43,16 @@ void MovingBoxes::begin_staging() {
 }
 
 std::size_t MovingBoxes::stage(std::span<const std::uint32_t> entries, const Obb* first, std::size_t stride,
-                               const Obb* before) {
+                               const Obb* before, std::uint8_t* differs) {
     if (entries.empty()) return 0;
     if (staged_.empty()) begin_staging();
     BoxSet& next = sets_[1 - now_];
     shapes_.resize(before != nullptr ? (size() + 15) / 16 : 0, 0);
-    const std::size_t count = write_strided_boxes(first, stride, entries.data(), entries.size(), next.chunks_.data(),
-                                                  next.rows_.data(), next.records_.data(), before, shapes_.data());
-    mark(staged_, entries.first(count));
+    const bool in_order = are_consecutive(entries);
+    const std::size_t count =
+        write_strided_boxes(first, stride, entries, in_order, next.chunks_.data(), next.rows_.data(),
+                            next.records_.data(), before, shapes_.data(), differs);
+    mark(staged_, entries.first(count), in_order);
     return count;
 }
 

@@ -63,13 +63,13 @@ class GrowingVector {
     }
     void clear() { resize(0); }
 
-    // Takes memory for `count` more, after which appending them takes none. Takes an eighth more than there is, where
-    // there is no room.
+    // Takes memory for `count` more, after which appending them takes none. Where there is no room, takes an eighth
+    // more than there is, and a 16th more than `count`, so that the next few are not copied at once.
     void make_room(std::size_t count) {
         const std::size_t most = values_.capacity();
         if (values_.size() + count > most) {
             stop_growing();
-            values_.reserve(values_.size() + values_.size() / 8 + count + 16);
+            values_.reserve(values_.size() + std::max(values_.size() / 8, count / 16) + count + 16);
         } else if (next_.capacity() == 0 && most * sizeof(T) > kSmall && (most - values_.size()) < most / kRoomPart) {
             edited_.reserve(kMostEdited);
             next_.reserve(most + most / 8);
@@ -78,8 +78,8 @@ class GrowingVector {
     void append(std::size_t count, const T& value) {
         if (count == 0) return;
         make_room(count);
-        // Ends when half the room that is left now is used.
-        const std::size_t room = (values_.capacity() - values_.size() - count) / 2;
+        // Ends shortly before the room that is left now is used.
+        const std::size_t left = values_.capacity() - values_.size() - count, room = left - left / 8;
         values_.resize(values_.size() + count, value);
         if (next_.capacity() > 0) copy((values_.size() - next_.size()) / (room / count + 1) + count);
     }
@@ -91,7 +91,7 @@ class GrowingVector {
 
     // Copies what has changed, and some more. Call it now and then where elements change.
     void settle() {
-        if (next_.capacity() > 0) copy(edited_.size() + kSmall / 8 / sizeof(T));
+        if (next_.capacity() > 0) copy(edited_.size() + kSmall / 32 / sizeof(T) + 1);
     }
 
     // Copies the rest at once.

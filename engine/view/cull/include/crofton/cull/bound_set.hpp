@@ -133,10 +133,13 @@ class MovingBoxes {
     //
     // The k-th box, `stride` bytes after the one before, belongs to items()[entries[k]]; of several boxes for one entry
     // the last counts. Stops at the first box that is not certainly valid, and returns the number of staged boxes.
-    // Requires entries below size(). `before`, if given, must be boxes() as they were at the last finish(): boxes that
-    // have moved without turning then cost less.
+    // Requires entries below size().
+    //
+    // Both or neither of the last two: `before`, which must be boxes() as they were at the last finish(), so that boxes
+    // that have moved without turning cost less; and `differs`, of size() bytes, of which that of an entry becomes 1 if
+    // its staged box differs from the one before, bit for bit, else 0.
     std::size_t stage(std::span<const std::uint32_t> entries, const Obb* first, std::size_t stride,
-                      const Obb* before = nullptr);
+                      const Obb* before = nullptr, std::uint8_t* differs = nullptr);
     // Discards the staged box of any entry; finish() reads its box.
     void unstage(std::size_t entry) {
         if (entry / 64 < staged_.size()) staged_[entry / 64] &= ~(std::uint64_t{1} << entry % 64);
