@@ -391,6 +391,42 @@ TEST_SUITE("convex/union_normals_of_edges") {
         CHECK(several > 2'000);
     }
 
+    // A plate beside the rod covers its contact, and along the plate's normal the rod has no point of its own.
+    TEST_CASE("a ball deep in a rod beside a plate is pushed at a point of its surface") {
+        RandomShapes random(72);
+        int turned = 0;
+        for (int i = 0; i < 4000; ++i) {
+            CAPTURE(i);
+            const double length = random.number(1.0, 4.0), thick = i % 2 == 0 ? 0.0 : random.number(0.0, 0.1);
+            const double side = random.number(0.5, 3.0), radius = random.number(0.2, 2.0);
+            const CompoundChild rod = block({-thick, -thick, -length}, {thick, thick, length}),
+                                plate = block({-side, -2.0 - thick, -side}, {side, -thick, side});
+            const RigidTransform frame{random.rotation(), 10.0 * random.direction()};
+            const ShapeAtPose a{rod.shape, placed_in(frame, rod.pose)},
+                beside{plate.shape, placed_in(frame, plate.pose)};
+            const Shape ball = Shape::sphere(radius).value();
+            const glm::dvec3 off(random.number(-1, 1), random.number(-1, 1), random.number(-1, 1));
+            const RigidTransform pose =
+                placed_in(frame, at(glm::dvec3(0, 0, random.number(-length, length)) + (i % 3 == 0 ? 0.0 : 0.1) * off));
+            const std::span<const ShapeAtPose> near(&beside, 1);
+            Manifolds found;
+            const bool swapped = i % 5 == 0;
+            if (swapped)
+                contact_manifolds({ball, pose}, a, Beside{{}, near}, {}, found);
+            else
+                contact_manifolds(a, {ball, pose}, Beside{near, {}}, {}, found);
+            for (const Manifold& m : found.all())
+                for (int k = 0; k < m.count; ++k) {
+                    const ContactPoint& p = m.points[k];
+                    const glm::dvec3 on_ball = p.position + (swapped ? 0.5 : -0.5) * p.depth * m.normal;
+                    const glm::dvec3 outward = (on_ball - pose.translation) / radius;
+                    if (glm::distance(swapped ? m.normal : -m.normal, frame.rotation[1]) > 1.99) ++turned;
+                    CHECK(glm::length(outward) == doctest::Approx(1.0).epsilon(1e-6));
+                }
+        }
+        CHECK(turned > 1000);
+    }
+
     TEST_CASE("a half-space among walls, buried blocks and tiles pushes as a thick block does, in any frame") {
         RandomShapes random(69);
         const Shape ground = Shape::half_space({{0, -1, 0}, 0}).value();

@@ -457,23 +457,38 @@ void UnionNormals::replace_behind() {
         }
 }
 
-// A contact's deepest point seen along another normal, up at the face of the first part across it. Beside a round shape
-// the overlap there is as deep as its surface is flat.
+// A contact's deepest point seen along another normal, up at the face of a part across it. The overlap there is that of
+// a ball and the face, or as deep as if both surfaces were flat. If the normals differ too much for that, all of the
+// overlap counts, and the point lies below the core of the round part.
 void UnionNormals::keep_deepest(const Contact& from, Contact& contact) const {
-    const ShapeAtPose a = placed(0, contact.part[0]), b = placed(1, contact.part[1]);
-    const Pair pair(a, b);
-    const glm::dvec3 normal = contact.normal;
+    const ShapeAtPose parts[2] = {placed(0, contact.part[0]), placed(1, contact.part[1])};
+    const Pair pair(parts[0], parts[1]);
     const ContactPoint* deepest = from.points;
     for (int i = 1; i < from.count; ++i)
         if (from.points[i].depth > deepest->depth) deepest = from.points + i;
-    const glm::dvec3 on_a = deepest->position + 0.5 * deepest->depth * from.normal;
-    const double turn = glm::dot(from.normal, normal), extent = pair.extent(normal) + pair.a.radius() + pair.b.radius();
-    const double top = core_support(a.shape, Pair::local(a.pose.rotation, normal)).along + a.shape.radius();
-    const double lift = std::max(0.0, top - glm::dot(on_a - a.pose.translation, normal));
+    const glm::dvec3 half = 0.5 * deepest->depth * from.normal;
+    const glm::dvec3 on[2] = {deepest->position + half, deepest->position - half};
+    const auto outward = [](int list, const glm::dvec3& normal) { return list == 0 ? normal : -normal; };
+    const double turn = glm::dot(from.normal, contact.normal);
+    const double extent = pair.extent(contact.normal) + pair.a.radius() + pair.b.radius();
+    const bool is_flat = turn > 0.5;
+    const int face = parts[0].shape.kind() == Kind::sphere ? 1 : 0;
+    const int core = parts[1 - face].shape.radius() > 0.0 ? 1 - face : face;
+    const ShapeAtPose &part = parts[face], &other = parts[1 - face];
+    const glm::dvec3 normal = outward(face, contact.normal);
+    glm::dvec3 at = is_flat ? on[face] : on[core] - parts[core].shape.radius() * outward(core, from.normal);
+    const double top = core_support(part.shape, Pair::local(part.pose.rotation, normal)).along + part.shape.radius();
+    at += (top - glm::dot(at - part.pose.translation, normal)) * normal;
     ContactPoint& point = contact.points[0];
     point = *deepest;
-    point.depth = turn > 0.5 ? std::min(extent, deepest->depth / turn) : extent;
-    point.position = on_a + (lift - 0.5 * point.depth) * normal;
+    point.depth = is_flat ? std::min(extent, deepest->depth / turn) : extent;
+    if (other.shape.kind() == Kind::sphere) {
+        const glm::dvec3 from_center = at - other.pose.translation;
+        const double along = glm::dot(from_center, normal), radius = other.shape.radius();
+        const double aside = glm::dot(from_center, from_center) - along * along;
+        point.depth = along + std::sqrt(std::max(0.0, radius * radius - aside));
+    }
+    point.position = at - 0.5 * point.depth * normal;
     contact.count = 1;
     contact.depth = point.depth;
 }
