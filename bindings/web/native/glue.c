@@ -43,7 +43,8 @@ AT(crofton_world_statistics, object_count, 64);
 SIZE(crofton_mesh_info, 24);
 AT(crofton_mesh_info, clusters, 8);
 SIZE(crofton_cluster, 56);
-_Static_assert(CROFTON_SET_USER == 1 && CROFTON_SET_LAYERS == 2 && CROFTON_SET_HIDDEN == 8 && CROFTON_SET_BOUND == 64, "a member has moved");
+_Static_assert(CROFTON_SET_USER == 1 && CROFTON_SET_LAYERS == 2 && CROFTON_SET_HIDDEN == 8 && CROFTON_SET_BOUND == 64,
+               "a member has moved");
 SIZE(crofton_ray, 56);
 SIZE(crofton_object_hit, 88);
 AT(crofton_object_hit, t, 16);

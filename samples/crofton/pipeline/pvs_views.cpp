@@ -193,8 +193,7 @@ Result<PvsViewFigures> look_at_views(const scene::Scene& scene, const pvs::BakeG
         return fail(ErrorCode::invalid_argument, kNoItem, "views: their number and their sizes must be positive");
     crofton::detail::StopSignal stop(options.should_stop, options.user);
     const auto stopped = [] { return fail(ErrorCode::cancelled, kNoItem, "views: stopped"); };
-    const auto space =
-        FreeSpace::find(scene, focus_of(scene), {.unit = options.unit, .within = sets.cells().bounds()});
+    const auto space = FreeSpace::find(scene, focus_of(scene), {.unit = options.unit, .within = sets.cells().bounds()});
     if (stop.is_raised(0.0)) return stopped();
     auto tree = mesh::MeshTree::build(geometry.mesh, {.boxes = mesh::MeshBoxes::principal_axes, .rays = true});
     if (!tree) return tl::unexpected(tree.error());

@@ -198,8 +198,7 @@ Result<void> Session::cut_clusters() {
 
 // A level is looked at from where much of it is seen; what has no inside stays framed as a whole.
 void Session::stand_inside() {
-    const auto space =
-        pipeline::FreeSpace::find(loaded_->scene(), loaded_->focus(), {.unit = loaded_->source().unit});
+    const auto space = pipeline::FreeSpace::find(loaded_->scene(), loaded_->focus(), {.unit = loaded_->source().unit});
     const auto stand = space ? space->best_stand() : std::nullopt;
     if (stand) controller_.stand(stand->eye, stand->eye + stand->forward, space->eye_height());
 }

@@ -94,8 +94,8 @@ struct OccluderCandidate {
 // with the patch's mean shadows along the axes.
 [[nodiscard]] OccluderCandidate candidate_of(const FoundOccluder& found, const Transform& transform);
 
-// Candidates by id, stored for vector kernels. Ids are 0, 1, 2, … in the order of add(), which takes as long however many
-// there are.
+// Candidates by id, stored for vector kernels. Ids are 0, 1, 2, … in the order of add(), which takes as long however
+// many there are.
 class OccluderCandidates {
   public:
     OccluderCandidates();
