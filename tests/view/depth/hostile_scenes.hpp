@@ -104,7 +104,7 @@ inline TriangleMesh needles(oracle::NearMisses& random) {
         const auto first = static_cast<std::uint32_t>(mesh.positions.size());
         for (const glm::dvec3& p : {from, from + along, from + along + across, from + across})
             mesh.positions.push_back(glm::vec3(p));
-        for (const std::uint32_t v : {0, 1, 2, 0, 2, 3}) mesh.indices.push_back(first + v);
+        for (const std::uint32_t v : {0u, 1u, 2u, 0u, 2u, 3u}) mesh.indices.push_back(first + v);
     }
     return mesh;
 }
