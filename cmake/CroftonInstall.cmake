@@ -26,10 +26,10 @@ foreach(component bake study render)
 endforeach()
 if(TARGET crofton_cli)
     install(TARGETS crofton_cli crofton_study_cli COMPONENT tools)
-    install(FILES ${PROJECT_SOURCE_DIR}/packaging/crofton.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
+    install(FILES ${PROJECT_BINARY_DIR}/completion/crofton.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
             RENAME crofton COMPONENT tools)
-    install(FILES ${PROJECT_SOURCE_DIR}/packaging/_crofton DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions COMPONENT tools)
-    install(FILES ${PROJECT_SOURCE_DIR}/packaging/crofton.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT tools)
+    install(FILES ${PROJECT_BINARY_DIR}/completion/_crofton DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions COMPONENT tools)
+    install(FILES ${PROJECT_BINARY_DIR}/completion/crofton.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT tools)
     # The manual pages are the texts of --help: made when they are installed.
     find_program(CROFTON_HELP2MAN help2man)
     if(CROFTON_HELP2MAN AND NOT CMAKE_CROSSCOMPILING)

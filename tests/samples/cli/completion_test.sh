@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# What bash completes: packaging/crofton.bash is sourced and its function called as bash would. Fish is asked itself, where it is installed.
-#   tests/samples/cli/completion_test.sh FOLDER    of the program `crofton`
+# What bash completes: crofton.bash is sourced and its function called as bash would. Fish is asked itself, where it is installed.
+#   tests/samples/cli/completion_test.sh FOLDER SCRIPTS    folders of the program `crofton` and of the completion scripts
 set -uo pipefail
 cd "$(dirname "$0")/../../.."
 if ((BASH_VERSINFO[0] < 4)); then
@@ -9,9 +9,10 @@ if ((BASH_VERSINFO[0] < 4)); then
     exit 0
 fi
 PATH=$1:$PATH LC_ALL=C
+scripts=$2
 export PATH LC_ALL
-bash -n packaging/crofton.bash || exit 1
-source packaging/crofton.bash
+bash -n "$scripts/crofton.bash" || exit 1
+source "$scripts/crofton.bash"
 
 # completed WORD…: what is offered for the last of these words, in one line and in order.
 completed() {
@@ -60,7 +61,7 @@ if command -v fish >/dev/null; then
     # fish WANTED LINE: the first word of each line that fish offers.
     in_fish() {
         local found
-        found=$(fish --no-config -c 'source packaging/crofton.fish; complete -C $argv[1]' "$2" | cut -f1 | sort -u | paste -sd' ')
+        found=$(fish --no-config -c 'source $argv[1]; complete -C $argv[2]' "$scripts/crofton.fish" "$2" | cut -f1 | sort -u | paste -sd' ')
         [[ $found == "$1" ]] && return
         echo "fish completes \`$2\` to '$found', not to '$1'"
         failed=1
