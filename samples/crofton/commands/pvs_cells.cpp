@@ -149,16 +149,21 @@ Result<pvs::Cells> cells_of_rooms(const assets::SceneSource& source, const RoomO
 Result<pvs::Cells> cells_from(const std::string& text, const Aabb& eyes, const assets::SceneSource& source,
                               const RoomOptions& rooms, const assets::ReadLimits& limits) {
     if (text == "rooms") return cells_of_rooms(source, rooms);
-    glm::uvec3 counts(0);
-    const char* at = text.c_str();
-    if (take_number(at, counts.x) && take(at, 'x') && take_number(at, counts.y) && take(at, 'x') &&
-        take_number(at, counts.z) && *at == '\0')
-        return pvs::Cells::grid(eyes, counts);
+    if (const auto counts = grid_from(text)) return pvs::Cells::grid(eyes, *counts);
     std::error_code error;
     if (!std::filesystem::exists(text, error))
         return fail(ErrorCode::invalid_argument, kNoItem,
                     "--cells " + text + ": there is no such file; a grid is three numbers, as 64x2x64; or take rooms");
     return cells_of_file(text, limits);
+}
+
+std::optional<glm::uvec3> grid_from(const std::string& text) {
+    glm::uvec3 counts(0);
+    const char* at = text.c_str();
+    if (take_number(at, counts.x) && take(at, 'x') && take_number(at, counts.y) && take(at, 'x') &&
+        take_number(at, counts.z) && *at == '\0')
+        return counts;
+    return std::nullopt;
 }
 
 Result<pvs::Shard> shard_from(const std::string& text) {

@@ -3,6 +3,7 @@
 #pragma once
 #include <cmath>
 #include <crofton/pvs/pvs.hpp>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -21,6 +22,8 @@ struct RoomOptions {
 [[nodiscard]] Result<pvs::Cells> cells_from(const std::string& text, const Aabb& eyes,
                                             const assets::SceneSource& source, const RoomOptions& rooms,
                                             const assets::ReadLimits& limits);
+// "NXxNYxNZ"; nothing of another text.
+[[nodiscard]] std::optional<glm::uvec3> grid_from(const std::string& text);
 // "i/n" with 0 ≤ i < n; "": all.
 [[nodiscard]] Result<pvs::Shard> shard_from(const std::string& text);
 // "x,y,z…": as many numbers as `numbers` has room for.

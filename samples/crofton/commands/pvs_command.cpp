@@ -35,7 +35,7 @@ constexpr std::uint32_t kByScene = ~std::uint32_t{0}, kStepsInLevels = 10000;
 
 struct PvsRequest {
     ReadOptions read;
-    std::string scene, map, cells = "64x2x64", eyes, sides = "both", shard, state, out, svg, eye, json;
+    std::string scene, map, cells, eyes, sides = "both", shard, state, out, svg, eye, json;
     double reach = 0.0, height = 10.0, epsilon = 1e-4, confidence = 0.999, seconds = 0.0, near_radius = 0.5,
            cell_size = HUGE_VAL;
     std::uint64_t seed = 1;
@@ -73,7 +73,7 @@ Result<Job> make_job(const PvsRequest& options, Executor& executor) {
         if (auto read = read_numbers("--eyes", options.eyes, x); !read) return tl::unexpected(read.error());
         eyes = {{x[0], x[1], x[2]}, {x[3], x[4], x[5]}};
     }
-    auto cells = cells_from(options.cells, eyes, *source,
+    auto cells = cells_from(options.cells.empty() ? "64x2x64" : options.cells, eyes, *source,
                             {.inset = kInset * options.near_radius, .size = options.cell_size}, options.read.limits);
     if (!cells) return tl::unexpected(cells.error());
     auto scene =
@@ -326,9 +326,11 @@ Result<int> run_regions(const PvsRequest& options, Executor& executor) {
     if (!shard) return tl::unexpected(shard.error());
     RegionSetsBake bake;
     bake.folder = options.scene;
-    if (std::sscanf(options.cells.c_str(), "%ux%ux%u", &bake.cells.x, &bake.cells.y, &bake.cells.z) != 3)
-        return fail(ErrorCode::invalid_argument, kNoItem, "--cells: regions have NXxNYxNZ cells each");
-    if (options.cells == fixed.cells) bake.cells = RegionSetsBake().cells;
+    if (!options.cells.empty()) {
+        const auto grid = grid_from(options.cells);
+        if (!grid) return fail(ErrorCode::invalid_argument, kNoItem, "--cells: regions have NXxNYxNZ cells each");
+        bake.cells = *grid;
+    }
     bake.height = options.height;
     bake.reach = options.reach;
     bake.lines = {.epsilon = options.epsilon,
@@ -409,10 +411,10 @@ void add_pvs_command(CommandLine& line) {
             "town, room, office, valley, hall, a folder of city parts or of regions, or a .glb, .gltf, .obj, .wad or "
             ".crofton file")
         .required();
-    command
-        .option("--cells", options->cells,
-                "NXxNYxNZ, rooms (the sectors of a WAD, cut into convex pieces), or a file of boxes and convex cells")
-        .show_default();
+    command.option(
+        "--cells", options->cells,
+        "NXxNYxNZ, rooms (the sectors of a WAD, cut into convex pieces), or a file of boxes and convex cells. "
+        "Default: 64x2x64; of each region in a folder 8x1x8");
     const Option cell_size =
         command
             .option("--cell-size", options->cell_size, "With --cells rooms: cut cells until none is longer in x or z")

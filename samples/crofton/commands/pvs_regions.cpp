@@ -46,10 +46,6 @@ std::uint64_t sum_of_options(const RegionSetsBake& bake) {
     return bake::checksum(std::as_bytes(std::span(all)));
 }
 
-bool stop_if_interrupted(void*, double) {
-    return interrupted();
-}
-
 // The region's own occluders, or those that are found if it was baked without.
 std::shared_ptr<const pipeline::SceneOccluders> occluders_of(const std::string& path, const scene::Scene& scene,
                                                              const assets::ReadLimits& limits) {
@@ -70,14 +66,14 @@ Result<pvs::Pvs> sets_of(const RegionSetsBake& bake, const bake::RegionFile& reg
     if (!cells) return tl::unexpected(cells.error());
     auto lines = pvs::Bake::create(*geometry, *cells, bake.lines);
     if (!lines) return tl::unexpected(lines.error());
-    if (auto traced = lines->run({.should_stop = stop_if_interrupted}); !traced) return tl::unexpected(traced.error());
+    if (auto traced = lines->run({.should_stop = should_stop}); !traced) return tl::unexpected(traced.error());
     const auto found = occluders_of(path, scene, limits);
     std::vector<pvs::PlacedOccluder> occluders;
     for (const pipeline::SceneOccluders::Object& object : found->objects)
         for (const occlude::FoundOccluder& occluder : found->kinds[object.kind].found.occluders)
             occluders.push_back({&occluder, scene.world(object.node)});
     pvs::ProofOptions proofs = bake.proofs;
-    proofs.should_stop = stop_if_interrupted;
+    proofs.should_stop = should_stop;
     return pvs::Pvs::finish(*lines, occluders, proofs);
 }
 

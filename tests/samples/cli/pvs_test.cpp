@@ -261,6 +261,7 @@ TEST_SUITE("cli/pvs") {
         REQUIRE_MESSAGE(seen.status == 0, seen.err);
         CHECK(seen.json()["summary"]["mismatches"] == 0);
         CHECK(seen.json()["summary"]["mean_occlusion_visible"] < before.json()["summary"]["mean_visible"]);
+        CHECK(run_cli("pvs '" + folder + "' --cells 8x1x8x").err.find("NXxNYxNZ") != std::string::npos);
         // Nothing is baked twice, and shards write the same bytes.
         CHECK(run_cli("pvs '" + folder + "'" + sets + "--json -").json()["regions_baked"] == 0);
         for (const char* shard : {"0/2", "1/2"})
