@@ -189,6 +189,20 @@ struct RegionPipeline::State {
         frame.triangles_passed = counts.triangles_passed;
     }
 
+    // nullptr: the region is not attached.
+    [[nodiscard]] const RegionStream::Attached* attached_at(std::uint32_t place) const {
+        const auto entry = std::lower_bound(in_order.begin(), in_order.end(), place,
+                                            [](const auto& a, std::uint32_t at) { return a.place < at; });
+        return entry != in_order.end() && entry->place == place ? &*entry : nullptr;
+    }
+
+    // As RegionPipeline::set_of().
+    [[nodiscard]] std::span<const std::uint64_t> set_of(const RegionStream::Attached& entry,
+                                                        const Camera& camera) const {
+        if (!entry.region->sets) return {};
+        return entry.region->sets->seen_by(camera, stream.index()[entry.place].origin);
+    }
+
     // Of the visible instances, those that no region's sets prove hidden.
     void keep_in_sets(const Camera& camera, OccludedFrame& frame) const {
         const auto start = Clock::now();
@@ -196,14 +210,9 @@ struct RegionPipeline::State {
         for (const RegionStream::Attached& entry : in_order) {
             const scene::InstanceId first = drawables->first_of(entry.place);
             const auto count = static_cast<std::uint32_t>(entry.region->region.object_count());
-            const auto seen = entry.region->sets
-                                  ? entry.region->sets->seen_by(camera, stream.index()[entry.place].origin)
-                                  : std::span<const std::uint64_t>();
-            for (; next < visible_ids.size() && visible_ids[next] - first < count; ++next) {
-                const std::uint32_t object = visible_ids[next] - first;
-                if (seen.empty() || (seen[object / 64] >> object % 64 & 1) != 0)
-                    frame.visible_ids.push_back(visible_ids[next]);
-            }
+            const auto seen = set_of(entry, camera);
+            for (; next < visible_ids.size() && visible_ids[next] - first < count; ++next)
+                if (cull::is_candidate(seen, visible_ids[next] - first)) frame.visible_ids.push_back(visible_ids[next]);
         }
         frame.occlude_us = us_since(start);
     }
@@ -351,23 +360,16 @@ scene::InstanceId RegionPipeline::instance_of(ObjectHandle object) const {
         if (entry.handle == place->region) return first_of(entry.place) + place->index;
     return scene::kNone;
 }
-std::optional<bool> RegionPipeline::seen_in_sets(scene::InstanceId instance, const Camera& camera) const {
-    const std::uint32_t place = place_of(instance);
-    const auto entry = std::find_if(state_->in_order.begin(), state_->in_order.end(),
-                                    [&](const RegionStream::Attached& attached) { return attached.place == place; });
-    if (entry == state_->in_order.end() || !entry->region->sets) return std::nullopt;
-    const auto seen = entry->region->sets->seen_by(camera, state_->stream.index()[place].origin);
-    if (seen.empty()) return std::nullopt;
-    const std::uint32_t object = instance - first_of(place);
-    return (seen[object / 64] >> object % 64 & 1) != 0;
+std::span<const std::uint64_t> RegionPipeline::set_of(std::uint32_t place, const Camera& camera) const {
+    const RegionStream::Attached* const entry = state_->attached_at(place);
+    return entry != nullptr ? state_->set_of(*entry, camera) : std::span<const std::uint64_t>();
 }
 ObjectHandle RegionPipeline::object_of(scene::InstanceId instance) const {
     if (instance >= state_->verdicts.size()) return {};
     const std::uint32_t place = place_of(instance);
-    for (const RegionStream::Attached& entry : state_->in_order)
-        if (entry.place == place)
-            return state_->stream.world().object_in(entry.handle, instance - first_of(place)).value_or(ObjectHandle{});
-    return {};
+    const RegionStream::Attached* const entry = state_->attached_at(place);
+    if (entry == nullptr) return {};
+    return state_->stream.world().object_in(entry->handle, instance - first_of(place)).value_or(ObjectHandle{});
 }
 
 }  // namespace crofton::pipeline

@@ -59,8 +59,8 @@ class RegionPipeline {
     // Of an object in an answer of stream().world(); the other way round, null if its region is not attached.
     [[nodiscard]] scene::InstanceId instance_of(ObjectHandle object) const;
     [[nodiscard]] ObjectHandle object_of(scene::InstanceId instance) const;
-    // Whether a camera may see an instance of the last run(), by the sets of its region; nothing where none say it.
-    [[nodiscard]] std::optional<bool> seen_in_sets(scene::InstanceId instance, const Camera& camera) const;
+    // A bit set of a region's objects that a camera may see, by the region's sets. Empty: none say it.
+    [[nodiscard]] std::span<const std::uint64_t> set_of(std::uint32_t place, const Camera& camera) const;
 
   private:
     struct State;

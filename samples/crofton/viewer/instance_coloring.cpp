@@ -142,9 +142,12 @@ void InstanceColoring::classify_sets(const pipeline::RegionPipeline& regions, co
     count("not proved hidden", palette::kInside);
     count("proved hidden", palette::kHidden);
     count("in no set", palette::kCalm);
+    std::uint32_t place = scene::kNone;
+    std::span<const std::uint64_t> seen;  // of the region at this place: visible instances lie region by region
     for (const scene::InstanceId i : frame.visible_ids) {
-        const auto seen = regions.seen_in_sets(i, frame.camera);
-        tint_of_[i] = !seen ? 2 : *seen ? 0 : 1;
+        if (const std::uint32_t own = regions.place_of(i); own != place)
+            place = own, seen = regions.set_of(place, frame.camera);
+        tint_of_[i] = seen.empty() ? 2 : cull::is_candidate(seen, i - regions.first_of(place)) ? 0 : 1;
         ++counts_[tint_of_[i]].instances;
     }
 }
