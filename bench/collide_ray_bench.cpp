@@ -156,29 +156,29 @@ const mesh::MeshTree* tree_of(const char* name, bool prepared) {
     return place->second.triangle_count() == 0 ? nullptr : &place->second;
 }
 
-void single_rays(benchmark::State& state, const char* name, RayMaker make, std::size_t count, bool prepared) {
-    const mesh::MeshTree* const tree = tree_of(name, prepared);
-    if (tree == nullptr) return state.SkipWithError("shared data is absent");
-    const auto rays = make(mesh_of(name), count);
+// Casts one ray after the other; `is_hit(ray)`.
+template <class IsHit>
+void one_by_one(benchmark::State& state, const std::vector<Ray>& rays, const IsHit& is_hit) {
     int hits = 0;
     for (auto _ : state) {
         hits = 0;
-        for (const Ray& ray : rays) hits += mesh::raycast(ray, *tree).has_value();
+        for (const Ray& ray : rays) hits += is_hit(ray);
     }
     count_rays(state, rays.size(), hits);
+}
+
+void single_rays(benchmark::State& state, const char* name, RayMaker make, std::size_t count, bool prepared) {
+    const mesh::MeshTree* const tree = tree_of(name, prepared);
+    if (tree == nullptr) return state.SkipWithError("shared data is absent");
+    one_by_one(state, make(mesh_of(name), count),
+               [&](const Ray& ray) { return mesh::raycast(ray, *tree).has_value(); });
 }
 
 // Whether anything is hit, as shadows ask.
 void any_hits(benchmark::State& state, const char* name, RayMaker make, std::size_t count) {
     const mesh::MeshTree* const tree = tree_of(name, true);
     if (tree == nullptr) return state.SkipWithError("shared data is absent");
-    const auto rays = make(mesh_of(name), count);
-    int hits = 0;
-    for (auto _ : state) {
-        hits = 0;
-        for (const Ray& ray : rays) hits += mesh::hits_any(ray, *tree);
-    }
-    count_rays(state, rays.size(), hits);
+    one_by_one(state, make(mesh_of(name), count), [&](const Ray& ray) { return mesh::hits_any(ray, *tree); });
 }
 
 // All at once, beside Embree's packets of 8 and 16.
@@ -252,39 +252,27 @@ RTCRay embree_ray(const Ray& ray) {
 void embree_rays(benchmark::State& state, const char* name, RayMaker make, std::size_t count) {
     if (mesh_of(name).indices.empty()) return state.SkipWithError("shared data is absent");
     const RTCScene scene = embree_scene(name);
-    const auto rays = make(mesh_of(name), count);
-    int hits = 0;
-    for (auto _ : state) {
-        hits = 0;
-        for (const Ray& ray : rays) {
-            RTCIntersectContext context;
-            rtcInitIntersectContext(&context);
-            RTCRayHit query{};
-            query.ray = embree_ray(ray);
-            query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-            rtcIntersect1(scene, &context, &query);
-            hits += query.hit.geomID != RTC_INVALID_GEOMETRY_ID;
-        }
-    }
-    count_rays(state, rays.size(), hits);
+    one_by_one(state, make(mesh_of(name), count), [&](const Ray& ray) {
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        RTCRayHit query{};
+        query.ray = embree_ray(ray);
+        query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+        rtcIntersect1(scene, &context, &query);
+        return query.hit.geomID != RTC_INVALID_GEOMETRY_ID;
+    });
 }
 
 void embree_any_hits(benchmark::State& state, const char* name, RayMaker make, std::size_t count) {
     if (mesh_of(name).indices.empty()) return state.SkipWithError("shared data is absent");
     const RTCScene scene = embree_scene(name);
-    const auto rays = make(mesh_of(name), count);
-    int hits = 0;
-    for (auto _ : state) {
-        hits = 0;
-        for (const Ray& ray : rays) {
-            RTCIntersectContext context;
-            rtcInitIntersectContext(&context);
-            RTCRay query = embree_ray(ray);
-            rtcOccluded1(scene, &context, &query);
-            hits += query.tfar < 0.0f;
-        }
-    }
-    count_rays(state, rays.size(), hits);
+    one_by_one(state, make(mesh_of(name), count), [&](const Ray& ray) {
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        RTCRay query = embree_ray(ray);
+        rtcOccluded1(scene, &context, &query);
+        return query.tfar < 0.0f;
+    });
 }
 
 template <int Width>

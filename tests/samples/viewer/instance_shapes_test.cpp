@@ -74,6 +74,30 @@ double nearest_triangle(const scene::Scene& scene, std::span<const scene::Instan
     return nearest;
 }
 
+struct Uniform {
+    std::mt19937 random;
+    double operator()(double low, double high) {
+        return low + (high - low) * static_cast<double>(random()) / 4294967296.0;
+    }
+};
+
+// Cubes that are turned, scaled and sheared, with their middles in the box.
+std::vector<scene::InstanceId> scatter_cubes(scene::Scene& scene, Uniform& uniform, scene::InstanceId count,
+                                             const Aabb& box) {
+    const auto mesh = scene.add_mesh(testing::cube_mesh(0.5f));
+    REQUIRE(mesh);
+    std::vector<scene::InstanceId> all;
+    for (scene::InstanceId i = 0; i < count; ++i) {
+        Transform transform;
+        for (int k = 0; k < 9; ++k) transform.linear[k / 3][k % 3] = uniform(-1.5, 1.5);
+        for (int k = 0; k < 3; ++k) transform.translation[k] = uniform(box.min[k], box.max[k]);
+        place(scene, *mesh, transform);
+        all.push_back(i);
+    }
+    scene.update();
+    return all;
+}
+
 }  // namespace
 
 TEST_SUITE("viewer/picking") {
@@ -104,21 +128,9 @@ TEST_SUITE("viewer/picking") {
         CHECK(pick_at(without_nearest, camera, {0.01, -0.05})->instance == 2);
     }
     TEST_CASE("2,000 clicks on scaled, sheared and moving shapes pick what testing every triangle picks") {
-        std::mt19937 random(5);
-        const auto uniform = [&](double low, double high) {
-            return low + (high - low) * static_cast<double>(random()) / 4294967296.0;
-        };
+        Uniform uniform{std::mt19937(5)};
         scene::Scene scene;
-        const auto mesh = scene.add_mesh(testing::cube_mesh(0.5f));
-        REQUIRE(mesh);
-        std::vector<scene::InstanceId> all;
-        for (scene::InstanceId i = 0; i < 60; ++i) {
-            glm::dmat3 linear;
-            for (int k = 0; k < 9; ++k) linear[k / 3][k % 3] = uniform(-1.5, 1.5);
-            place(scene, *mesh, {linear, {uniform(-8, 8), uniform(-5, 5), uniform(-25, -4)}});
-            all.push_back(i);
-        }
-        scene.update();
+        const auto all = scatter_cubes(scene, uniform, 60, {{-8, -5, -25}, {8, 5, -4}});
         Picker pick_at(scene, {3, 4, 5});
         int picked = 0;
         for (int click = 0; click < 2000; ++click) {
@@ -133,7 +145,7 @@ TEST_SUITE("viewer/picking") {
             }
             std::vector<scene::InstanceId> candidates;
             for (const scene::InstanceId i : all)
-                if (random() % 4 != 0) candidates.push_back(i);
+                if (uniform.random() % 4 != 0) candidates.push_back(i);
             const Camera camera;
             const glm::dvec2 cursor(uniform(-1, 1), uniform(-1, 1));
             const auto hit = pick_at(candidates, camera, cursor);
@@ -149,21 +161,9 @@ TEST_SUITE("viewer/picking") {
         CHECK(picked > 300);
     }
     TEST_CASE("1,000 clicks over regions pick what testing every triangle of the whole scene picks") {
-        std::mt19937 random(8);
-        const auto uniform = [&](double low, double high) {
-            return low + (high - low) * static_cast<double>(random()) / 4294967296.0;
-        };
+        Uniform uniform{std::mt19937(8)};
         scene::Scene scene;
-        const auto mesh = scene.add_mesh(testing::cube_mesh(0.5f));
-        REQUIRE(mesh);
-        std::vector<scene::InstanceId> all;
-        for (scene::InstanceId i = 0; i < 200; ++i) {
-            glm::dmat3 linear;
-            for (int k = 0; k < 9; ++k) linear[k / 3][k % 3] = uniform(-1.5, 1.5);
-            place(scene, *mesh, {linear, {uniform(-30, 30), uniform(-5, 5), uniform(-30, 30)}});
-            all.push_back(i);
-        }
-        scene.update();
+        const auto all = scatter_cubes(scene, uniform, 200, {{-30, -5, -30}, {30, 5, 30}});
         const testing::RegionFolder folder(scene, 4, 3);
         auto regions = pipeline::RegionPipeline::open(folder.path, {.stream = {.distance = 40.0}}).value();
         int picked = 0;
