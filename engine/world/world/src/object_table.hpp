@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The data of a World's objects except their boxes. Indices are those of the spatial index.
 #pragma once
+#include <bit>
 #include <crofton/core/error.hpp>
 #include <crofton/core/growing_vector.hpp>
 #include <crofton/core/memory.hpp>
@@ -157,7 +158,7 @@ class MoverTable {
     // else kNoIndex.
     [[nodiscard]] std::uint32_t first_in_row(const Strided<ObjectHandle>& handles, std::size_t begin,
                                              std::size_t end) const {
-        static_assert(sizeof(ObjectHandle) == 8 && sizeof(Key) == 8);
+        static_assert(sizeof(ObjectHandle) == 8 && sizeof(Key) == 8 && std::endian::native == std::endian::little);
         const std::size_t count = end - begin;
         if (count == 0 || handles.stride() != sizeof(ObjectHandle)) return kNoIndex;
         const std::uint32_t first = handles[begin].index;
