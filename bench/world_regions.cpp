@@ -206,8 +206,8 @@ void attaching(int frames) {
     }
 }
 
-// A region that comes into a world of a million others and goes again, beside Bullet's dynamic tree of aligned boxes,
-// into which each object is inserted, and beside one tree that is built again.
+// Attaches a region to a world of a million other objects and detaches it. Bullet's dynamic tree inserts and removes
+// each object, and one tree of all is rebuilt.
 void peers(int frames) {
     constexpr std::size_t kOthers = 1'000'000;
     const std::vector<Obb> others = crowd(kOthers);

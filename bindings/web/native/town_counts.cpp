@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What native Crofton says of the page's town. For each camera: the objects in its frustum, the triangles that its
-// picture needs, and a digest of their list. Reads doubles, written by bindings/web/test/page.test.js.
+// Prints the native library's answers for the page's town. For each camera: the objects in its frustum, the triangles
+// that its picture needs, and a digest of their list. Reads doubles, written by bindings/web/test/page.test.js.
 #include <crofton/capi/crofton.h>
 
 #include <cstdint>

@@ -58,7 +58,7 @@ int main() {
             for (int k = 0; k < 3; ++k)
                 transforms.push_back(static_cast<float>(c < 3 ? world.linear[c][k] : world.translation[k]));
     }
-    // The walk is on the pavement; the flight goes over the middle of the street beside it.
+    // The walk follows the pavement. Move it to the middle of the street for the flight.
     const std::vector<glm::dvec3>& corners_of_walk = source->walk;
     const std::size_t count = corners_of_walk.size();
     const double aside = 0.5 * (crofton::assets::town::kCarriageway + crofton::assets::town::kSidewalk);
