@@ -231,7 +231,7 @@ class Rust:
     def __init__(self, headers):
         self.headers = headers
         self.text = text_of("bindings/rust/src/sys.rs")
-        crate = all_text("bindings/rust/src", "[!s]*.rs")
+        crate = all_text("bindings/rust/src", "?[!y]*.rs")
         self.bodies = {}
         declared = re.compile(r"#\[repr\(C\)\](?:\s*#\[[^\n]*\])*\s*pub struct (\w+) \{(.*?)\n\s*\}", re.S)
         for prefix, text in (("", self.text), ("crate::", crate)):

@@ -228,7 +228,7 @@ typedef struct crofton_shape_description {
     size_t point_count;
     uint32_t max_vertices; /* hulls: 4 to 256; 0: 256. A hull with more is replaced by a larger one that contains it */
     float face_tolerance;  /* hulls: triangles within this of a plane, relative to the size, are one face; 0: 1e-5 */
-    const crofton_mesh* mesh; /* meshes: the triangles, as a surface */
+    const crofton_mesh* mesh; /* meshes: the triangles, as a surface; no coordinate beyond 1e12 */
     const crofton_height_field* height_field;
     uint32_t front_only; /* meshes, height fields; 1: contacts push to the front only, for fields up, and casts from
                             behind pass */
