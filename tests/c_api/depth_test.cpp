@@ -403,7 +403,7 @@ TEST_SUITE("capi/depth") {
         CHECK(made == nullptr);
     }
 
-    TEST_CASE("a mesh comes back from its bytes without being cut; damaged bytes are refused") {
+    TEST_CASE("a mesh comes back from its bytes without being cut, and damaged bytes are refused") {
         const ClusteredMesh mesh = cut(crofton::testing::cube_mesh(), 4);
         std::size_t count = 0, again = 0;
         REQUIRE(crofton_clustered_mesh_serialise(mesh.get(), nullptr, 0, &count) == CROFTON_OK);
