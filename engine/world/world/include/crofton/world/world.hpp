@@ -103,10 +103,10 @@ class World {
 
     // Gives an object a shape, or takes it away (nullptr). Pairs change with the next update, queries at once.
     //
-    // Contacts of two objects that both have shapes have Contact::shape_points. Data that the shape refers to
-    // must stay alive and unchanged; to change it, set the shape again. The object's transform, or the frame of its box
-    // or sphere, places the shape; axes that are left-handed or off by more than 1e-6 are replaced by the nearest
-    // rotation.
+    // Contacts of two objects that both have shapes have Contact::shape_points; others have Contact::points. Data that
+    // the shape refers to must stay alive and unchanged; to change it, set the shape again. The object's transform, or
+    // the frame of its box or sphere, places the shape; axes that are left-handed or off by more than 1e-6 are replaced
+    // by the nearest rotation.
     //
     // Box: from the next update on, the object's box is the smallest in its own frame that contains the shape and the
     // bound or the mesh's box, if it has one. Views, pairs and queries use this box, so that they miss no part of the
