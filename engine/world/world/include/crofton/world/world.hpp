@@ -262,8 +262,8 @@ class World {
     [[nodiscard]] Result<std::optional<ShapeHit>> cast(const convex::Shape& probe, const RigidTransform& pose,
                                                        const convex::Motion& motion, const convex::CastOptions& options,
                                                        std::uint32_t layers = ~0u) const;
-    // Returns the object that is nearest to the probe, within max_distance; if several are equally near, the one with
-    // the lowest index. Tests the same shapes as overlap(): the distance is 0 iff the probe overlaps the object.
+    // Returns the object that is nearest to the probe, at most max_distance away; if several are equally near, the one
+    // with the lowest index. Tests the same shapes as overlap(): the distance is 0 iff the probe overlaps the object.
     [[nodiscard]] std::optional<ClosestObject> closest(const Sphere& probe, double max_distance,
                                                        std::uint32_t layers = ~0u) const;
     [[nodiscard]] std::optional<ClosestObject> closest(const Obb& probe, double max_distance,
