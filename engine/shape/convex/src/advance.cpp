@@ -109,14 +109,14 @@ Impact Advancement::impact(CastResult result, const Contact& now, int steps) con
     impact.normal = now.normal;
     impact.on_a = flight_.in_world(now.on_a);
     impact.on_b = flight_.in_world(now.on_b);
-    impact.distance = now.distance;
+    impact.distance = now.distance + 0.0;  // never −0
     impact.steps = steps;
     return impact;
 }
 
 Impact Advancement::miss(int steps) const {
     Impact impact;
-    impact.time = early_;
+    impact.time = early_ + 0.0;
     impact.steps = steps;
     return impact;
 }

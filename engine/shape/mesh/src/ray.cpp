@@ -103,7 +103,7 @@ double parameter(const Ray& ray, const Triangle& t) {
     const double margin = 1e-12 * std::max(std::abs(low), std::abs(high));
     const double least = low - margin, most = high + margin;
     const double kept = by_plane < least ? least : by_plane <= most ? by_plane : most;
-    return std::min(std::max(kept, 0.0), ray.max_t);
+    return std::min(std::max(kept, 0.0), ray.max_t) + 0.0;  // never −0
 }
 
 // The largest one that is not above x, but at most 2^1000, so that its reciprocal is a normal number. x is a valid
@@ -214,7 +214,7 @@ std::optional<TriangleHit> raycast(const Ray& ray, const mesh::MeshTree& mesh) {
     if (!is_valid(ray)) return std::nullopt;
     const RayAnswer answer = trace(ray, mesh, false);
     if (!answer.hit) return std::nullopt;
-    return TriangleHit{answer.t, answer.triangle};
+    return TriangleHit{answer.t + 0.0, answer.triangle};
 }
 
 bool hits_any(const Ray& ray, const mesh::MeshTree& mesh) {

@@ -37,7 +37,7 @@ bool cast_packet(std::span<const Ray> rays, const MeshTree& mesh, std::optional<
         return false;
     for (std::size_t r = 0; r < rays.size(); ++r) {
         hits[r] = std::nullopt;
-        if (answers[r].hit) hits[r] = TriangleHit{answers[r].t, answers[r].triangle};
+        if (answers[r].hit) hits[r] = TriangleHit{answers[r].t + 0.0, answers[r].triangle};
     }
     return true;
 }
