@@ -72,8 +72,6 @@ TEST_SUITE("cli/usage") {
             {"collide " + obj + " " + obj + " --hulls --mode cast --duration 3", "--velocity"},
             {"collide " + obj + " " + obj + " --velocity 1,0,0", "--mode cast"},
             {"collide " + obj + " " + obj + " --max-vertices 8", "--hulls"},
-            {"triangulate " + poly + " --frusta 10", "--compare"},
-            {"triangulate " + poly + " --least-vertices 10", "--compare"},
             {"triangulate " + poly + " --no-indices", "--json"},
             {"triangulate " + poly + " --tolerance 0.1", "for meshes"},
             {"triangulate " + poly + " --attribute-tolerance 0.1", "for meshes"},
