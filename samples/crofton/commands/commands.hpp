@@ -17,8 +17,8 @@ void add_merge_command(CommandLine& line);
 void add_pvs_command(CommandLine& line);
 void add_radiosity_command(CommandLine& line);
 void add_triangulate_command(CommandLine& line);
+void add_triangulations_command(CommandLine& line);
 void add_verify_command(CommandLine& line);
-void add_views_command(CommandLine& line);
 void add_view_command(CommandLine& line);  // where GLFW and Dear ImGui are installed
 
 constexpr const char* kDescription =
@@ -45,9 +45,9 @@ inline constexpr StudyCommand kRadiosity{"radiosity",
                                          "Light a scene by global lines and bake the light into vertex colours", true};
 inline constexpr StudyCommand kBounds{"bounds", "Compare spheres, boxes and k-DOPs around meshes by what they cost",
                                       true};
-inline constexpr StudyCommand kViews{
-    "views", "Compare boxes for the directions of a camera path with boxes for all directions", true};
-inline constexpr StudyCommand kStudyCommands[] = {kMerge,  kVerify, kMeasure,   kLines,
-                                                  kBounds, kViews,  kHierarchy, kRadiosity};
+inline constexpr StudyCommand kTriangulations{
+    "triangulations", "Compare methods of triangulation by what they cost to cull and draw", true};
+inline constexpr StudyCommand kStudyCommands[] = {kMerge,  kVerify,    kMeasure,        kLines,
+                                                  kBounds, kHierarchy, kTriangulations, kRadiosity};
 
 }  // namespace crofton::cli

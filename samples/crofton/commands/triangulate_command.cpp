@@ -17,7 +17,7 @@
 #include "progress_bar.hpp"
 #include "read_options.hpp"
 #include "report.hpp"
-#include "triangulate_modes.hpp"
+#include "triangulate_meshes.hpp"
 
 namespace crofton::cli {
 namespace {
@@ -32,10 +32,7 @@ struct TriangulateOptions {
     double work = 0.0;       // in millions of steps, where it is given
     double memory = 1024.0;  // MiB
     double tolerance = -1.0, attribute_tolerance = 1e-4;
-    bool no_indices = false, compare = false, has_tolerance = false, is_mesh_option_given = false,
-         is_work_given = false;
-    std::uint64_t frusta = 100'000;
-    std::size_t least_vertices = 5;
+    bool no_indices = false, has_tolerance = false, is_mesh_option_given = false, is_work_given = false;
     ReadOptions read;
 };
 
@@ -190,12 +187,6 @@ Result<int> run_triangulate(const TriangulateOptions& options) {
     }
     if (!options.map.empty() && kind != "wad")
         return fail(ErrorCode::invalid_argument, kNoItem, "--map is for .wad files");
-    if (options.compare) {
-        if (!options.svg.empty() || !options.out.empty() || options.frusta == 0)
-            return fail(ErrorCode::invalid_argument, kNoItem, "--compare needs --frusta, and writes no --svg or --out");
-        return run_compare({options.file, options.map, options.json, limits_of(options, *method), options.tolerance,
-                            options.frusta, options.read, options.least_vertices});
-    }
     catch_interrupts();
     if (is_polygon_file(options.file)) {
         if (!options.out.empty())
@@ -227,7 +218,6 @@ constexpr const char* kTriangulateExamples =
     "  crofton triangulate county.geojson --svg county.svg          exact minimum weight, and a picture\n"
     "  crofton triangulate glyphs.poly --no-indices --json -        weights and times only\n"
     "  crofton triangulate level.wad --map MAP01 --method delaunay  every sector of one level\n"
-    "  crofton triangulate glyphs.poly --compare                    the cost of each method for frusta and pixels\n"
     "  crofton triangulate house.glb --out lighter.glb              the same house with shorter inner edges\n"
     "  crofton triangulate town --out town.glb                      the built-in town as a file\n";
 
@@ -264,13 +254,6 @@ void add_triangulate_command(CommandLine& line) {
                     "Largest deviation of texture coordinates, normals, colours, ... from one linear function of the "
                     "position within a patch; inf: no limit")
             .show_default();
-    const Option compare = command.flag(
-        "--compare", options->compare,
-        "Compare all methods: weights; triangles passed and pixel quads, predicted and measured; draw time");
-    command.option("--frusta", options->frusta, "Number of random frusta for --compare").show_default().needs(compare);
-    command.option("--least-vertices", options->least_vertices, "With --compare: leave out polygons of fewer vertices")
-        .show_default()
-        .needs(compare);
     const Option json =
         command.option("--json", options->json, "Write results as JSON; - for stdout").writable_file_or_stdout();
     command.flag("--no-indices", options->no_indices, "Leave the triangles out of the JSON").needs(json);

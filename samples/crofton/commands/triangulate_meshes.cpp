@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "triangulate_modes.hpp"
+#include "triangulate_meshes.hpp"
 
 #include <algorithm>
 #include <cmath>

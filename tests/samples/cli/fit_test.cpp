@@ -300,16 +300,4 @@ TEST_SUITE("cli/fit") {
         CHECK(best != "sphere");
         CHECK(best != "aligned box");
     }
-
-    TEST_CASE("study views: a flat box gains by a path that looks one way, and a missing path is named") {
-        const std::string path = file("path.json", R"([{"position": [0, 2, 0], "forward": [1, 0, 0]},)"
-                                                   R"( {"position": [20, 2, 5], "forward": [1, -0.1, 0]}])"),
-                          box = file("seen.obj", turned_box());
-        const CliRun run = run_cli("study views" + path + box + " --json -");
-        REQUIRE(run.status == 0);
-        const auto mesh = run.json().at("meshes")[0];
-        CHECK(number(mesh, "directed_measure") <= number(mesh, "plain_measure") * (1.0 + 1e-9));
-        CHECK(number(mesh, "hull_measure") <= number(mesh, "directed_measure") * (1.0 + 1e-9));
-        CHECK(run_cli("study views nowhere.json" + box).err.find("nowhere.json") != std::string::npos);
-    }
 }

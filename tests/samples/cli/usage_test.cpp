@@ -72,8 +72,6 @@ TEST_SUITE("cli/usage") {
             {"collide " + obj + " " + obj + " --hulls --mode cast --duration 3", "--velocity"},
             {"collide " + obj + " " + obj + " --velocity 1,0,0", "--mode cast"},
             {"collide " + obj + " " + obj + " --max-vertices 8", "--hulls"},
-            {"triangulate " + poly + " --frusta 10", "--compare"},
-            {"triangulate " + poly + " --least-vertices 10", "--compare"},
             {"triangulate " + poly + " --no-indices", "--json"},
             {"triangulate " + poly + " --tolerance 0.1", "for meshes"},
             {"triangulate " + poly + " --attribute-tolerance 0.1", "for meshes"},
@@ -89,8 +87,6 @@ TEST_SUITE("cli/usage") {
             {"pvs room --shard 0/2", "--state"},
             {"study radiosity room --shard 0/2", "--runs"},
             {"study radiosity room --stored-lines 9", "--light-field"},
-            {"verify cull --map MAP01", "--scene"},
-            {"verify cull --instances 40", "--scene"},
             {"study lines room --patches 9", "--factors"}};
         for (const auto& refused : cases) {
             const std::string& reason = refused.second;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "triangulate_modes.hpp"
-
+// crofton study triangulations: what each method's triangles cost a frustum, a rasterizer and its pixels.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <crofton/triangulate/triangulate.hpp>
 #include <cstdio>
+#include <memory>
 
 #include "assets/gltf_primitive.hpp"
 #include "assets/scene_source.hpp"
@@ -13,6 +13,7 @@
 #include "json/json.hpp"
 #include "polygon_files.hpp"
 #include "progress_bar.hpp"
+#include "read_options.hpp"
 #include "report.hpp"
 #include "triangulation_costs.hpp"
 
@@ -26,7 +27,14 @@ constexpr std::array<const char*, 3> kMethodNames = {"ear", "delaunay", "minimum
 constexpr double kQuadSize = 64.0;
 constexpr int kFrames = 60;
 
-Result<std::vector<Polygon>> gather(const CompareRun& run) {
+struct TriangulationsRequest {
+    std::string file, map, json;
+    std::uint64_t frusta = 100'000;
+    std::size_t least_vertices = 5;  // smaller polygons leave little choice
+    ReadOptions read;
+};
+
+Result<std::vector<Polygon>> gather(const TriangulationsRequest& run) {
     std::vector<Polygon> result;
     const auto add = [&](const Polygon& polygon) {
         if (polygon.points.size() >= run.least_vertices) result.push_back(polygon);
@@ -42,7 +50,7 @@ Result<std::vector<Polygon>> gather(const CompareRun& run) {
     if (!source) return tl::unexpected(source.error());
     for (scene::MeshId m = 0; m < source->scene.mesh_count(); ++m) {
         const TriangleMesh& mesh = source->scene.mesh(m);
-        const auto patches = triangulate::find_planar_patches(mesh, assets::patch_tolerance(mesh, run.tolerance));
+        const auto patches = triangulate::find_planar_patches(mesh, assets::patch_tolerance(mesh, -1.0));
         if (!patches) return tl::unexpected(patches.error());
         for (const auto& patch : *patches) add(patch.polygon);
     }
@@ -66,7 +74,7 @@ struct Study {
     std::array<double, 3> weight{};  // in the file's units
 };
 
-Study triangulate_all(std::vector<Polygon> polygons, triangulate::TriangulateOptions options) {
+Study triangulate_all(std::vector<Polygon> polygons) {
     Study study;
     triangulate::Triangulator triangulator;
     ProgressBar bar("triangulate", polygons.size());
@@ -75,8 +83,7 @@ Study triangulate_all(std::vector<Polygon> polygons, triangulate::TriangulateOpt
         bool valid = true;
         for (std::size_t m = 0; m < kMethods.size() && valid; ++m) {
             entry.results.emplace_back();
-            options.method = kMethods[m];
-            valid = triangulator.triangulate(polygons[i], options, entry.results.back()).has_value();
+            valid = triangulator.triangulate(polygons[i], {.method = kMethods[m]}, entry.results.back()).has_value();
         }
         bar.set(i + 1);
         if (!valid) {
@@ -133,12 +140,12 @@ void print(const Study& study, const Comparison& passed, const QuadComparison& q
     }
 }
 
-}  // namespace
-
-Result<int> run_compare(const CompareRun& run) {
+// Weights of all methods over a file's polygons, or its meshes' planar patches; triangles passed by random frusta and
+// pixel quads, predicted and measured; triangles clipped and draw time.
+Result<int> run_triangulations(const TriangulationsRequest& run) {
     auto polygons = gather(run);
     if (!polygons) return tl::unexpected(polygons.error());
-    const Study study = triangulate_all(std::move(*polygons), run.limits);
+    const Study study = triangulate_all(std::move(*polygons));
     if (study.polygons.empty())
         return fail(ErrorCode::empty, kNoItem,
                     run.file + ": no valid polygon of " + std::to_string(run.least_vertices) + " vertices or more");
@@ -158,6 +165,33 @@ Result<int> run_compare(const CompareRun& run) {
     }
     if (run.json != "-") print(study, passed, quads, drawn, run.frusta);
     return kSuccess;
+}
+
+}  // namespace
+
+void add_triangulations_command(CommandLine& line) {
+    auto request = std::make_shared<TriangulationsRequest>();
+    Command command = kTriangulations.add_to(line);
+    command.option("file", request->file, "Polygons, or a mesh or scene whose planar patches are taken").required();
+    command.option("--map", request->map, "Level of a .wad file; all by default");
+    command.option("--frusta", request->frusta, "Number of random frusta")
+        .whole_between(1, std::uint64_t{1} << 40)
+        .show_default();
+    command.option("--least-vertices", request->least_vertices, "Leave out polygons of fewer vertices").show_default();
+    command.option("--json", request->json, "Write the table as JSON; - for stdout, instead of the text")
+        .writable_file_or_stdout();
+    command.footer(
+        "Compares ear clipping, Delaunay and minimum weight: weight; triangles that meet a random frustum, and 2 x 2\n"
+        "pixel quads, predicted and measured; triangles clipped and draw time on a software Vulkan device.\n"
+        "\n"
+        "Examples:\n"
+        "  crofton study triangulations glyphs.poly\n"
+        "  crofton study triangulations town --json -");
+    add_read_options(command, request->read);
+    command.action([request] {
+        const auto status = run_triangulations(*request);
+        return status ? *status : report_error("", status.error());
+    });
 }
 
 }  // namespace crofton::cli
