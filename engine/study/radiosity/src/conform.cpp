@@ -243,7 +243,7 @@ class Mender {
 
 Result<RefinedMesh> mend_t_junctions(const TriangleMesh& mesh, double tolerance) {
     return crofton::detail::recover([&]() -> Result<RefinedMesh> {
-        if (auto valid = validate(mesh); !valid) return tl::unexpected(valid.error());
+        if (auto valid = validate(mesh); !valid) return valid.error();
         if (!(tolerance >= 0.0))
             return fail(ErrorCode::out_of_range, kNoItem, "mending: the tolerance must not be negative");
         if (mesh.indices.empty()) return RefinedMesh{mesh, {}};

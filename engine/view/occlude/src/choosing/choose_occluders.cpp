@@ -276,7 +276,7 @@ void write(CandidatePage& page, std::size_t i, const glm::dvec3& origin, const O
 
 Result<std::uint32_t> OccluderCandidates::add(const OccluderCandidate& candidate) {
     const std::size_t id = data_->count;
-    if (auto status = check(id, candidate); !status) return tl::unexpected(status.error());
+    if (auto status = check(id, candidate); !status) return status.error();
     if (id == 0) data_->origin = candidate.center;
     reserve(id + 1);
     write(*data_->pages[id / CandidatePage::kSize], id % CandidatePage::kSize, data_->origin, candidate);
@@ -341,7 +341,7 @@ Result<void> choose_occluders(const OccluderCandidates& candidates, const Camera
                               OccluderChoice& choice) {
     choice.ids.clear();
     const auto view = occlusion_view_of(camera);
-    if (!view) return tl::unexpected(view.error());
+    if (!view) return view.error();
     choose_occluders(candidates, *view, budget, choice);
     return {};
 }
