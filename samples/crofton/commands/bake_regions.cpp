@@ -80,9 +80,9 @@ class RegionWriter {
         auto earlier = region_state_from(file->bytes());
         if (earlier && (earlier->key != state_.key || earlier->regions != state_.regions))
             earlier = fail(ErrorCode::invalid_argument, kNoItem,
-                           "is of another scene, or of other options; remove it to begin anew");
+                           "is of another scene, or of other options; remove it to start again");
         if (!earlier && bake_.state.empty()) {
-            std::fprintf(stderr, "crofton: %s: %s: beginning anew\n", path_.c_str(), earlier.error().message.c_str());
+            std::fprintf(stderr, "crofton: %s: %s: starting again\n", path_.c_str(), earlier.error().message.c_str());
             return {};
         }
         if (!earlier) return fail(earlier.error().code, kNoItem, path_ + ": " + earlier.error().message);

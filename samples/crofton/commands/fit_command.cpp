@@ -108,7 +108,7 @@ int run_fit(const FitRequest& request) {
         for (const std::string& file : request.files) {
             auto mesh = fit_mesh(file, *criterion, request);
             if (!mesh) return report_error("", mesh.error());
-            // Of several files, the one in which the search was interrupted has only some of its boxes.
+            // Leaves out the file in which the search was interrupted: it has only some of its boxes.
             if (interrupted() && request.files.size() > 1) break;
             meshes.push_back(std::move(*mesh));
             bar.set(meshes.size());

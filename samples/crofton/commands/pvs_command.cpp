@@ -321,7 +321,7 @@ Result<int> run_regions(const PvsRequest& options, Executor& executor) {
         options.map != fixed.map || options.instances != 0 || options.eyes != fixed.eyes || options.seconds > 0.0)
         return fail(ErrorCode::unsupported, kNoItem,
                     "--state, --out, --svg, --views, --map, --instances, --eyes and --seconds are not for a folder of "
-                    "regions: sets are written beside the regions, and a run continues where one was interrupted");
+                    "regions: sets are written next to the regions, and a run continues where one was interrupted");
     const auto shard = shard_from(options.shard);
     if (!shard) return shard.error();
     RegionSetsBake bake;
@@ -404,7 +404,7 @@ void add_pvs_command(CommandLine& line) {
         "  crofton pvs town --shard 0/2 --state part0       half of the lines; the others: 1/2, part1\n"
         "  crofton merge part0 part1 --out town.state       then both together\n"
         "  crofton pvs town --state town.state --out town_pvs.crofton --views 1000\n"
-        "  crofton pvs regions/ --cells 8x1x8 --reach 50    sets beside each region of a folder");
+        "  crofton pvs regions/ --cells 8x1x8 --reach 50    a file of sets for each region of a folder");
     command
         .option(
             "scene", options->scene,

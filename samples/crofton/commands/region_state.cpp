@@ -134,7 +134,7 @@ Result<std::vector<std::uint32_t>> merge_region_states(std::span<const std::stri
     const std::filesystem::path path(out);
     if (path.filename() != bake::kRegionIndexName)
         return fail(ErrorCode::invalid_argument, kNoItem,
-                    "--out: " + out + " must be FOLDER/" + bake::kRegionIndexName + ", beside the regions' files");
+                    "--out: " + out + " must be FOLDER/" + bake::kRegionIndexName + ", next to the regions' files");
     RegionState sum;
     for (std::size_t i = 0; i < parts.size(); ++i) {
         auto part = region_state_from(parts[i]);

@@ -203,7 +203,7 @@ struct RegionPipeline::State {
         return entry.region->sets->seen_by(camera, stream.index()[entry.place].origin);
     }
 
-    // Of the visible instances, those that no region's sets prove hidden.
+    // Keeps the visible instances that no region's sets prove hidden.
     void keep_in_sets(const Camera& camera, OccludedFrame& frame) const {
         const auto start = Clock::now();
         std::size_t next = 0;

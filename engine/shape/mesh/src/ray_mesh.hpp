@@ -29,7 +29,7 @@ struct RayQuery {
     bool any;
 };
 
-// Of a valid ray.
+// Requires a valid ray.
 [[nodiscard]] RayQuery query_of(const Ray& ray, const MeshTree& mesh, bool any);
 // Whether the ray meets the triangle in a leaf's lane, exactly.
 [[nodiscard]] bool meets(const Ray& ray, const MeshTree& mesh, std::uint32_t leaf, std::uint32_t lane);

@@ -68,12 +68,12 @@ struct DepthCuller::State {
     Vector<std::uint32_t> ends;
     Vector<std::uint8_t> looked_into;  // by object
     DepthStatistics statistics;
-    // Of find_visible(), for receivers of shadows.
+    // Kept from find_visible(), for receivers of shadows.
     bool has_picture = false;
     std::size_t drawn = 0;    // objects that were given
     Vector<SeenObject> seen;  // those that are listed
 
-    // Of objects and a view that are checked.
+    // Requires checked objects and a checked view.
     std::span<const VisibleCluster> find(std::span<const DepthObject> objects, const PictureView& view,
                                          std::span<const float> floors, Executor& executor) {
         const std::uint64_t limit = view.work_limit != 0 ? view.work_limit : ~std::uint64_t{0};
