@@ -146,7 +146,7 @@ function(crofton_library name)
         set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/crofton.map)
     endif()
     set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} LINKER_LANGUAGE CXX VERSION ${PROJECT_VERSION} SOVERSION 0)
-    target_link_libraries(${target} PUBLIC $<BUILD_INTERFACE:crofton_settings> glm::glm tl::expected ${ARGN} PRIVATE ${LINK})
+    target_link_libraries(${target} PUBLIC $<BUILD_INTERFACE:crofton_settings> glm::glm ${ARGN} PRIVATE ${LINK})
     # What the headers of an installed build were compiled with.
     target_compile_definitions(${target} INTERFACE $<INSTALL_INTERFACE:$<$<NOT:$<BOOL:${CROFTON_STATISTICS}>>:CROFTON_NO_STATISTICS=1>>)
 endfunction()

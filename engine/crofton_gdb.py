@@ -109,19 +109,10 @@ class Result:
         self.value = value
 
     def to_string(self):
-        if not self.value["m_has_val"]:
-            return self.value["m_unexpect"]["m_val"].format_string()
-        fields = [field.name for base in self.bases(self.value.type) for field in base.fields()]
-        return self.value["m_val"].format_string() if "m_val" in fields else "success"
-
-    def bases(self, of):
-        of = of.strip_typedefs()
-        yield of
-        for field in of.fields():
-            if field.is_base_class:
-                yield from self.bases(field.type)
-            elif field.name is None:  # the anonymous union that holds the value
-                yield field.type
+        if not self.value["has_value_"]:
+            return self.value["error_"].format_string()
+        value = self.value["value_"]
+        return "success" if value.type.strip_typedefs().name == "crofton::detail::Nothing" else value.format_string()
 
 
 class VisibleSet:

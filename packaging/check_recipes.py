@@ -22,7 +22,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 PORT = ROOT / "packaging/vcpkg/crofton"
 # What find_package calls them, and what both package managers do.
-PACKAGES = {"glm": "glm", "tl-expected": "tl-expected", "hwy": "highway", "Qhull": "qhull"}
+PACKAGES = {"glm": "glm", "hwy": "highway", "Qhull": "qhull"}
 OF_SYSTEM = {"Threads", "PkgConfig"}
 problems = []
 

@@ -20,7 +20,7 @@ packages=(
     # build
     g++ cmake ninja-build pkg-config glslang-tools
     # engine
-    libglm-dev libexpected-dev libhwy-dev libqhull-dev
+    libglm-dev libhwy-dev libqhull-dev
     # render: loader, headers, lavapipe, validation
     libvulkan-dev libvulkan-volk-dev mesa-vulkan-drivers vulkan-validationlayers
     # samples

@@ -32,9 +32,8 @@ class CroftonConan(ConanFile):
         cmake_layout(self)
 
     def requirements(self):
-        # Their headers are included by ours.
+        # Its headers are included by ours.
         self.requires("glm/0.9.9.8", transitive_headers=True)
-        self.requires("tl-expected/1.1.0", transitive_headers=True)
         self.requires("highway/1.0.3")
         self.requires("qhull/8.0.2")
 
@@ -72,7 +71,7 @@ class CroftonConan(ConanFile):
     def package_info(self):
         self.cpp_info.set_property("cmake_file_name", "crofton")
         self.cpp_info.set_property("cmake_target_name", "crofton::all")
-        outside = [f"{name}::{name}" for name in ("glm", "tl-expected", "highway", "qhull")]
+        outside = [f"{name}::{name}" for name in ("glm", "highway", "qhull")]
         for name, library, requires in (("crofton", "crofton", outside), ("bake", "crofton_bake", ["crofton"]), ("study", "crofton_study", ["bake"])):
             component = self.cpp_info.components[name]
             component.set_property("cmake_target_name", f"crofton::{name}")

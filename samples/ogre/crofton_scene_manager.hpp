@@ -49,7 +49,7 @@ class SceneManager final : public Ogre::SceneManager {
     // before the scene is built, or all nodes are looked at again; from then on occluders follow their nodes. A
     // material that becomes transparent later is noticed when its node next changes.
     void use_occlusion(bool use);
-    // Of the last picture: what World says of it; nothing for views without a depth buffer of ours, such as mirrors.
+    // Return the World's figures for the last picture; none for views without a depth buffer of ours, such as mirrors.
     [[nodiscard]] OcclusionStatistics occlusion_statistics() const { return visible_.occlusion_statistics(); }
     [[nodiscard]] const FindTimes& find_times() const { return find_times_; }
     // Objects with a box that the last search of ours saw.

@@ -87,7 +87,7 @@ TEST_SUITE("capi/rays") {
                 CHECK(hit.t == doctest::Approx(i == 0 ? 4.5 : 5.0));
                 CHECK(hit.part.triangle == (i == 0 ? 3u : 0u));
             }
-        // Of a one-sided surface, and of other shapes, any hit is one of crofton_shape_raycast.
+        // For a one-sided surface and for other shapes, any hit is one of crofton_shape_raycast.
         const Tetrahedron tetrahedron;
         const crofton_mesh source = tetrahedron.mesh();
         crofton_shape* made = nullptr;

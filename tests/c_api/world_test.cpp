@@ -285,7 +285,7 @@ TEST_SUITE("capi/world") {
         CHECK(crofton_world_set_boxes(world, &s.box, 0, &box, sizeof box + 1, 1) == CROFTON_INVALID_ARGUMENT);
         CHECK(crofton_world_set_boxes(world, &s.box, 0, &box, 0, SIZE_MAX / 8) == CROFTON_OUT_OF_RANGE);
         CHECK(crofton_world_set_boxes(world, &s.box, SIZE_MAX - 7, &box, 0, 2) == CROFTON_OUT_OF_RANGE);
-        // Of one element the stride may be as large as any array.
+        // The stride of a single element may be as large as any array.
         constexpr std::size_t kLargest = static_cast<std::size_t>(PTRDIFF_MAX) - 7;
         CHECK(crofton_world_set_boxes(world, &s.box, kLargest, &box, kLargest, 1) == CROFTON_OK);
         CHECK(crofton_world_set_boxes(world, &s.box, kLargest + 8, &box, 0, 1) == CROFTON_OUT_OF_RANGE);

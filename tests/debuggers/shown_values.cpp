@@ -28,9 +28,9 @@ int main() {
     camera.position = {7.0, 8.0, 9.0};
     [[maybe_unused]] const Frustum frustum = frustum_of(camera).value();
     [[maybe_unused]] const Result<int> number = 42;
-    [[maybe_unused]] const Result<int> no_number = tl::unexpected(error);
+    [[maybe_unused]] const Result<int> no_number = error;
     [[maybe_unused]] const Result<void> success;
-    [[maybe_unused]] const Result<void> failure = tl::unexpected(error);
+    [[maybe_unused]] const Result<void> failure = error;
     [[maybe_unused]] const ObjectHandle null;
     World world;
     [[maybe_unused]] const ObjectHandle first = world.add({.bound = Sphere{{0.0, 0.0, -5.0}, 1.0}}).value();

@@ -102,4 +102,22 @@ inline void add_star(Polygon& polygon, Random& random, const glm::dvec2& center,
     polygon.ring_ends.push_back(static_cast<std::uint32_t>(polygon.points.size()));
 }
 
+// Stars with and without holes, and a grid of squares whose triangulations are many of one weight.
+inline std::vector<Polygon> polygons() {
+    std::vector<Polygon> result;
+    Random random(51);
+    for (const int corners : {3, 7, 40, 150}) {
+        add_star(result.emplace_back(), random, {0.0, 0.0}, 2.0, 5.0, corners);
+        Polygon& holed = result.emplace_back();
+        add_star(holed, random, {0.0, 0.0}, 9.0, 12.0, corners + 5);
+        for (int k = 0; k < 3; ++k)
+            add_star(holed, random, 3.5 * sampling::circle_point(k / 3.0 + 0.1), 0.5, 2.0, corners / 3 + 3);
+    }
+    Polygon& comb = result.emplace_back();
+    for (int i = 0; i <= 10; ++i) comb.points.push_back({i, 0.0});
+    for (int i = 10; i >= 0; --i) comb.points.push_back({i, i % 2 ? 1.0 : 2.0});
+    comb.ring_ends.push_back(static_cast<std::uint32_t>(comb.points.size()));
+    return result;
+}
+
 }  // namespace crofton::test

@@ -34,7 +34,7 @@ class ConvexShapes {
         return Shape::hull(*hulls_.back());
     }
 
-    // Of b, beside a where that stands.
+    // A pose of b, next to a.
     RigidTransform touching(const convex::Shape& a, const RigidTransform& pose_a, const convex::Shape& b) {
         RigidTransform pose;
         pose.rotation = in_.flag() ? pose_a.rotation : in_.rotation();

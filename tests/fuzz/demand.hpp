@@ -7,7 +7,7 @@
 
 namespace crofton::fuzz {
 
-// Of this process: printed when it ends, so that executions that judge nothing are seen.
+// Counts of this process, printed when it ends, so that executions that judge nothing are seen.
 class Tally {
   public:
     ~Tally() {

@@ -58,7 +58,7 @@ void check_cast(fuzz::Shapes& in) {
     demand(convex::distance({a, now_a}, {b, now_b}).lower <= options.tolerance + rounding * size,
            "shapes that have hit");
     demand(impact->distance < options.tolerance + rounding * size, "the distance of a hit");
-    // Of what overlaps the depth is within 1e-5 of the size, and the deepest points with it.
+    // If the shapes overlap, the depth is within 1e-5 of the size, and so are the deepest points.
     if (impact->distance > 0.0)
         demand(oracle::fault_of_contact({a, now_a}, {b, now_b}, *impact, rounding * size).empty(),
                "the points and the normal of a hit");

@@ -24,7 +24,7 @@ void check_meeting(const ShapeAtPose& a, const ShapeAtPose& b, double size, Pair
     const Penetration p = penetration(a, b);
     demand(d.lower <= d.upper && d.lower <= d.distance && d.distance <= d.upper, "bounds of a distance");
     demand(p.lower <= p.upper, "bounds of a depth");
-    // Of round shapes a gap or an overlap of little more than rounding may be told either way.
+    // For round shapes either answer is right if the gap or overlap is little more than rounding.
     const bool exact = has_triangles(a.shape) && has_triangles(b.shape);
     const bool is_clear = exact || d.distance > 1e-7 * size || p.depth > 1e-7 * size;
     if (is_clear) {

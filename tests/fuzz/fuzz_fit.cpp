@@ -113,7 +113,7 @@ void check_plane(fuzz::Shapes& in) {
         }
     const auto best = fit::minimal_rectangle(points, which);
     demand(best.has_value(), "a rectangle");
-    // Of all pairs of points one is a side of the hull, or all points are one.
+    // Some pair of points is a side of the hull, or all points are equal.
     const double value = of(2.0 * best->half_extents.x, 2.0 * best->half_extents.y);
     if (least < 1e300)
         demand(value <= least + 1e-9 * (which == fit::PlanarCriterion::area ? size * size : size),

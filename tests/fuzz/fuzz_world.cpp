@@ -52,7 +52,7 @@ void check_views(fuzz::Shapes& in, const World& world, const oracle::Model& mode
     }
 }
 
-// Of what lies within rounding of a sphere's surface nothing is asked.
+// Nothing is asked about what lies within rounding of a sphere's surface.
 bool is_plain(const oracle::Model& model) {
     return std::none_of(model.objects.begin(), model.objects.end(),
                         [](const auto& entry) { return entry.second.bound.kind == BoundKind::sphere; });

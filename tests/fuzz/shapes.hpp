@@ -211,7 +211,7 @@ class Shapes {
         for (glm::dvec3& p : result) p = point();
         return result;
     }
-    // Of few vertices on the grid, so that triangles share points, edges and planes. Never empty.
+    // A mesh of few vertices on the grid, so that triangles share points, edges and planes. Never empty.
     TriangleMesh mesh(unsigned most_vertices, unsigned most_triangles) {
         TriangleMesh mesh;
         mesh.positions.resize(3 + below(most_vertices - 2));

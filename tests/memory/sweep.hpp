@@ -19,7 +19,7 @@ Outcome outcome_of(const Result<T>& result) {
 
 inline int failures_tried = 0;
 
-// Of operations that return an Error. `unchanged` looks at what the operation might have changed.
+// Sweeps operations that return an Error. `unchanged` looks at what the operation might have changed.
 template <class Operation, class Unchanged>
 void sweep(const char* name, const Operation& operation, const Unchanged& unchanged) {
     CAPTURE(std::string(name));

@@ -182,7 +182,7 @@ class DepthCertificate {
         return at->second;
     }
 
-    // Of a triangle that crosses the near plane, the part no nearer than `nearest`; any other as it is. As a fan. False
+    // Cuts a triangle that crosses the near plane to the part no nearer than `nearest`, as a fan. Returns false
     // where a vertex has no place.
     [[nodiscard]] bool cut(const std::array<Vertex, 3>& corners, double nearest, std::vector<Piece>& pieces) const {
         const bool crosses =

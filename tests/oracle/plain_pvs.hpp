@@ -55,7 +55,7 @@ inline bool span_in(const Aabb& box, const Line& line, double& begin, double& en
     return begin <= end;
 }
 
-// Of a hull: each triangle of three corners lies in it, and these cover its surface.
+// The line's part in a cell: each triangle of three corners lies in the hull, and together they cover its surface.
 inline bool span_in(const pvs::ConvexCell& cell, const glm::dvec3& origin, const Line& line, double& begin,
                     double& end) {
     begin = HUGE_VAL, end = -HUGE_VAL;

@@ -154,7 +154,7 @@ int sgn(const Number& a) {
     if (sign == kUnknown) throw Undecided{};
     return sign;
 }
-// Of numbers that never round.
+// For numbers that never round.
 template <class Number>
 int told(const Number& a) {
     return sgn(a);

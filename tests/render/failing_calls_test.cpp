@@ -64,7 +64,7 @@ constexpr std::uint32_t kItsIndices[] = {0, 1, 2};
 Result<Rasterizer> make_ready(Device& device) {
     auto rasterizer = Rasterizer::create(device, {32, 32});
     if (!rasterizer) return rasterizer;
-    if (auto set = rasterizer->set_geometry(kOneTriangle, kItsIndices); !set) return tl::unexpected(set.error());
+    if (auto set = rasterizer->set_geometry(kOneTriangle, kItsIndices); !set) return set.error();
     return rasterizer;
 }
 
@@ -76,10 +76,10 @@ Result<Image> draw(Rasterizer& rasterizer) {
     DrawTransform transforms[] = {draw_transform(ModelToClip(camera)(linear, glm::dvec3(0.0)), linear)};
     const DrawRange ranges[] = {{.first_index = 0, .index_count = 3, .transform = 0}};
     const auto counters = rasterizer.draw({.camera = camera, .transforms = transforms, .ranges = ranges});
-    if (!counters) return tl::unexpected(counters.error());
+    if (!counters) return counters.error();
     CHECK(counters->input_assembly_primitives == 1);
     Image image;
-    if (auto read = rasterizer.read_pixels(image); !read) return tl::unexpected(read.error());
+    if (auto read = rasterizer.read_pixels(image); !read) return read.error();
     return image;
 }
 

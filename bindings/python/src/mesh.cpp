@@ -20,7 +20,7 @@ Result<const mesh::MeshTree*> PyMesh::tree() const {
     const std::lock_guard lock(mutex_);
     if (!tree_) {
         auto built = mesh::MeshTree::build(mesh_, {.rays = true});
-        if (!built) return tl::unexpected(built.error());
+        if (!built) return built.error();
         if (!built->rejected().empty())
             return fail(ErrorCode::out_of_range, built->rejected()[0],
                         "mesh: a triangle has a vertex beyond 1e12; move or scale the mesh");
@@ -99,9 +99,9 @@ auto with_trees(const PyMesh& a, const PyMesh& b, F&& f) {
     using Answer = decltype(f(std::declval<const mesh::MeshTree&>(), std::declval<const mesh::MeshTree&>()));
     return value_of(unlocked([&]() -> Result<Answer> {
         const auto tree_a = a.tree();
-        if (!tree_a) return tl::unexpected(tree_a.error());
+        if (!tree_a) return tree_a.error();
         const auto tree_b = b.tree();
-        if (!tree_b) return tl::unexpected(tree_b.error());
+        if (!tree_b) return tree_b.error();
         return f(**tree_a, **tree_b);
     }));
 }

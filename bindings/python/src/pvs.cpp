@@ -157,8 +157,8 @@ Pvs bake(const py::handle& positions, const py::handle& indices, const py::objec
     const auto threads = executor();
     auto made = unlocked([&]() -> Result<Pvs> {
         auto lines = pvs::Bake::create(geometry, where, wanted.bake);
-        if (!lines) return tl::unexpected(std::move(lines.error()));
-        if (auto ran = lines->run(wanted.limits, *threads); !ran) return tl::unexpected(std::move(ran.error()));
+        if (!lines) return std::move(lines.error());
+        if (auto ran = lines->run(wanted.limits, *threads); !ran) return std::move(ran.error());
         if (watch.is_raised()) return fail(ErrorCode::cancelled, kNoItem, "pvs: stopped");  // without the proofs
         return Pvs::finish(*lines, {}, wanted.proof, *threads);
     });

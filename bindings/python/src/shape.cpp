@@ -45,7 +45,7 @@ SharedShape mesh_shape(const std::shared_ptr<PyMesh>& mesh, bool front_only) {
     result->mesh = mesh;
     result->shape = value_of(unlocked([&]() -> Result<convex::Shape> {
         const auto tree = mesh->tree();
-        if (!tree) return tl::unexpected(tree.error());
+        if (!tree) return tree.error();
         return convex::Shape::mesh(**tree, front_only ? convex::Sides::front : convex::Sides::both);
     }));
     return result;

@@ -68,7 +68,7 @@ py::array add_all(PyWorld& to, std::size_t count, const py::object& users, F&& d
             if (!added) {
                 for (const ObjectHandle handle : handles) (void)world.remove(handle);
                 added.error().item = i;
-                return tl::unexpected(added.error());
+                return added.error();
             }
             handles.push_back(*added);
         }

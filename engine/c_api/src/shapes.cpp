@@ -61,7 +61,7 @@ crofton_status create_hull(const Description& given, crofton_shape** shape, cons
     static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
     return create_shape(shape, function, [&](ShapeData& data) -> Result<convex::Shape> {
         auto hull = convex::Hull::build({reinterpret_cast<const glm::vec3*>(given.points), given.point_count}, wanted);
-        if (!hull) return tl::unexpected(hull.error());
+        if (!hull) return hull.error();
         return convex::Shape::hull(data.hull.emplace(std::move(*hull)));
     });
 }
@@ -83,9 +83,9 @@ crofton_status create_mesh(const Description& given, crofton_shape** shape, cons
     TriangleMesh copy;
     CROFTON_CHECK(to_mesh(given.mesh, function, copy));
     return create_shape(shape, function, [&](ShapeData& data) -> Result<convex::Shape> {
-        if (const auto valid = validate(copy); !valid) return tl::unexpected(valid.error());
+        if (const auto valid = validate(copy); !valid) return valid.error();
         auto tree = mesh::MeshTree::build(copy, {.rays = true});
-        if (!tree) return tl::unexpected(tree.error());
+        if (!tree) return tree.error();
         if (!tree->rejected().empty())
             return fail(ErrorCode::out_of_range, tree->rejected().front(), "mesh: a vertex is beyond 1e12");
         return convex::Shape::mesh(data.mesh.emplace(std::move(*tree)), sides_of(given));
@@ -108,7 +108,7 @@ crofton_status create_height_field(const Description& given, crofton_shape** sha
         if (field.spacing[k] != 0.0) description.spacing[k] = field.spacing[k];
     return create_shape(shape, function, [&](ShapeData& data) -> Result<convex::Shape> {
         auto built = convex::HeightField::build(description);
-        if (!built) return tl::unexpected(built.error());
+        if (!built) return built.error();
         return convex::Shape::height_field(data.field.emplace(std::move(*built)), sides_of(given));
     });
 }
@@ -134,7 +134,7 @@ crofton_status create_compound(const Description& given, crofton_shape** shape, 
             }
             data.parts = std::move(parts);
             auto built = convex::Compound::build(children);
-            if (!built) return tl::unexpected(built.error());
+            if (!built) return built.error();
             return convex::Shape::compound(data.compound.emplace(std::move(*built)));
         });
     });

@@ -82,7 +82,7 @@ Result<Device> Device::create(const DeviceOptions& options) {
     auto made = create_instance(*context, options);
     if (made) made = choose_physical_device(*context, options);
     if (made) made = create_logical_device(*context, options);
-    if (!made) return tl::unexpected(std::move(made.error()));
+    if (!made) return std::move(made.error());
     return Device(std::move(context));
 }
 

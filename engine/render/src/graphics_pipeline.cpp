@@ -178,13 +178,13 @@ Result<VkFramebuffer> create_framebuffer(const VulkanContext& context, VkRenderP
 Result<VkPipeline> create_pipeline(const VulkanContext& context, const PipelineDescription& description,
                                    VkPipelineLayout layout, VkRenderPass pass) {
     auto vertex = create_shader(context, description.vertex_shader, "vertex");
-    if (!vertex) return tl::unexpected(std::move(vertex.error()));
+    if (!vertex) return std::move(vertex.error());
     auto fragment = create_shader(context, description.fragment_shader, "fragment");
     VkPipeline pipeline = VK_NULL_HANDLE;
     VkResult result = VK_SUCCESS;
     if (fragment) result = assemble(context, description, *vertex, *fragment, layout, pass, pipeline);
     context.vk.vkDestroyShaderModule(context.device, *vertex, nullptr);
-    if (!fragment) return tl::unexpected(std::move(fragment.error()));
+    if (!fragment) return std::move(fragment.error());
     context.vk.vkDestroyShaderModule(context.device, *fragment, nullptr);
     if (result != VK_SUCCESS) return vulkan_failure(result, "vkCreateGraphicsPipelines");
     return pipeline;

@@ -97,7 +97,7 @@ Result<void> create_instance(VulkanContext& context, const DeviceOptions& option
     if (result != VK_SUCCESS) {
         Error error = vulkan_error(result, "vkCreateInstance");
         error.code = ErrorCode::unavailable;
-        return tl::unexpected(std::move(error));
+        return error;
     }
     volkLoadInstanceOnly(context.instance);
     if (options.validation) {

@@ -76,13 +76,13 @@ Pipelines::~Pipelines() {
 
 Result<void> Pipelines::create() {
     auto pass = create_render_pass(context, {.depth_format = kDepthFormat});
-    if (!pass) return tl::unexpected(std::move(pass.error()));
+    if (!pass) return std::move(pass.error());
     render_pass = *pass;
     if (auto made = create_layout(*this); !made) return made;
 
     const auto make = [&](const PipelineDescription& description, VkPipeline& pipeline) -> Result<void> {
         auto made = create_pipeline(context, description, layout, render_pass);
-        if (!made) return tl::unexpected(std::move(made.error()));
+        if (!made) return std::move(made.error());
         pipeline = *made;
         return {};
     };

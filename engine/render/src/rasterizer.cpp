@@ -43,7 +43,7 @@ Result<void> Rasterizer::State::create(const RasterizerOptions& options) {
     if (auto made = target->create(pipelines.render_pass, {options.width, options.height}, 1.0f); !made) return made;
     targets.push_back(std::move(target));
     auto made_commands = Commands::create(context);
-    if (!made_commands) return tl::unexpected(std::move(made_commands.error()));
+    if (!made_commands) return std::move(made_commands.error());
     commands = std::move(*made_commands);
     if (auto made = create_queries(); !made) return made;
     name_what_stays();
@@ -150,7 +150,7 @@ Rasterizer& Rasterizer::operator=(Rasterizer&&) noexcept = default;
 
 Result<Rasterizer> Rasterizer::create(Device& device, const RasterizerOptions& options) {
     auto state = std::make_unique<State>(device.context());
-    if (auto made = state->create(options); !made) return tl::unexpected(std::move(made.error()));
+    if (auto made = state->create(options); !made) return std::move(made.error());
     return Rasterizer(std::move(state));
 }
 
@@ -168,10 +168,10 @@ Result<void> Rasterizer::set_geometry(std::span<const Vertex> vertices, std::spa
         auto made_vertices =
             create_static_buffer(context, packed_vertices.data(), packed_vertices.size() * sizeof(PackedVertex),
                                  VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
-        if (!made_vertices) return tl::unexpected(std::move(made_vertices.error()));
+        if (!made_vertices) return std::move(made_vertices.error());
         auto made_indices =
             create_static_buffer(context, indices.data(), indices.size_bytes(), VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
-        if (!made_indices) return tl::unexpected(std::move(made_indices.error()));
+        if (!made_indices) return std::move(made_indices.error());
         new_vertices = std::move(*made_vertices);
         new_indices = std::move(*made_indices);
         new_vertices.name("vertices");
@@ -197,7 +197,7 @@ Result<void> Rasterizer::resize(std::uint32_t width, std::uint32_t height, std::
 }
 
 Result<GpuCounters> Rasterizer::draw(const Frame& frame, std::uint32_t picture) {
-    if (auto submitted = submit(frame, picture); !submitted) return tl::unexpected(std::move(submitted.error()));
+    if (auto submitted = submit(frame, picture); !submitted) return std::move(submitted.error());
     return finish();
 }
 
@@ -213,7 +213,7 @@ Result<void> Rasterizer::submit(const Frame& frame, std::uint32_t picture) {
 }
 
 Result<GpuCounters> Rasterizer::finish() {
-    if (auto done = state_->commands.wait(); !done) return tl::unexpected(std::move(done.error()));
+    if (auto done = state_->commands.wait(); !done) return std::move(done.error());
     return state_->read_counters();
 }
 

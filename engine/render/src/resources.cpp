@@ -47,7 +47,7 @@ Result<Buffer> Buffer::create(const VulkanContext& context, VkDeviceSize size, V
     vk.vkGetBufferMemoryRequirements(context.device, buffer.handle, &needs);
     bool host_visible = false;
     auto memory = allocate(context, needs, wanted, fallback, host_visible);
-    if (!memory) return tl::unexpected(std::move(memory.error()));
+    if (!memory) return std::move(memory.error());
     buffer.memory_ = *memory;
     if (const VkResult result = vk.vkBindBufferMemory(context.device, buffer.handle, buffer.memory_, 0);
         result != VK_SUCCESS)
@@ -75,7 +75,7 @@ Result<void> reserve_host_buffer(const VulkanContext& context, Buffer& buffer, V
                                  VkBufferUsageFlags usage) {
     if (buffer.size >= size) return {};
     auto grown = create_host_buffer(context, std::max(size, buffer.size * 2), usage);
-    if (!grown) return tl::unexpected(std::move(grown.error()));
+    if (!grown) return std::move(grown.error());
     buffer = std::move(*grown);
     return {};
 }
@@ -89,11 +89,11 @@ Result<Buffer> create_static_buffer(const VulkanContext& context, const void* da
         Buffer::create(context, size, usage | VK_BUFFER_USAGE_TRANSFER_DST_BIT, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0);
     if (!buffer) return buffer;
     auto commands = Commands::create(context);
-    if (!commands) return tl::unexpected(std::move(commands.error()));
-    if (auto begun = commands->begin(); !begun) return tl::unexpected(std::move(begun.error()));
+    if (!commands) return std::move(commands.error());
+    if (auto begun = commands->begin(); !begun) return std::move(begun.error());
     const VkBufferCopy whole{0, 0, size};
     context.vk.vkCmdCopyBuffer(commands->handle, staging->handle, buffer->handle, 1, &whole);
-    if (auto done = commands->submit_and_wait(); !done) return tl::unexpected(std::move(done.error()));
+    if (auto done = commands->submit_and_wait(); !done) return std::move(done.error());
     return buffer;
 }
 
@@ -124,7 +124,7 @@ Result<ImageResource> ImageResource::create(const VulkanContext& context, VkExte
     vk.vkGetImageMemoryRequirements(context.device, image.handle, &needs);
     bool host_visible = false;
     auto memory = allocate(context, needs, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0, host_visible);
-    if (!memory) return tl::unexpected(std::move(memory.error()));
+    if (!memory) return std::move(memory.error());
     image.memory_ = *memory;
     if (const VkResult result = vk.vkBindImageMemory(context.device, image.handle, image.memory_, 0);
         result != VK_SUCCESS)

@@ -34,7 +34,7 @@ Result<void> Target::create(VkRenderPass pass, VkExtent2D size, float share) {
                                           VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
                                               VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
                                           VK_IMAGE_ASPECT_COLOR_BIT);
-        if (!made) return tl::unexpected(std::move(made.error()));
+        if (!made) return std::move(made.error());
         image = std::move(*made);
         return {};
     };
@@ -43,16 +43,16 @@ Result<void> Target::create(VkRenderPass pass, VkExtent2D size, float share) {
         if (auto made = make_color(drawn_extent, drawn_color); !made) return made;
     auto made_depth = ImageResource::create(*context_, drawn_extent, kDepthFormat,
                                             VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, VK_IMAGE_ASPECT_DEPTH_BIT);
-    if (!made_depth) return tl::unexpected(std::move(made_depth.error()));
+    if (!made_depth) return std::move(made_depth.error());
     depth = std::move(*made_depth);
     auto made_readback =
         create_host_buffer(*context_, VkDeviceSize{4} * extent.width * extent.height, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
-    if (!made_readback) return tl::unexpected(std::move(made_readback.error()));
+    if (!made_readback) return std::move(made_readback.error());
     readback = std::move(*made_readback);
 
     const std::array views{enlarges ? drawn_color.view : color.view, depth.view};
     auto made = create_framebuffer(*context_, pass, views, drawn_extent);
-    if (!made) return tl::unexpected(std::move(made.error()));
+    if (!made) return std::move(made.error());
     framebuffer = *made;
     color.name("picture");
     drawn_color.name("picture as drawn");

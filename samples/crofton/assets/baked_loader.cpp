@@ -69,16 +69,16 @@ Result<void> fill(const bake::BakedScene& baked, scene::Scene& scene) {
         const bake::MeshView view = baked.mesh(i);
         const auto polygon = has_one_color(view) ? baked.polygon(i) : std::nullopt;
         const auto added = polygon ? add_polygon(*polygon, view, scene) : scene.add_mesh(mesh_of(view), view.name);
-        if (!added) return tl::unexpected(added.error());
+        if (!added) return added.error();
     }
     for (const bake::NodeRecord& node : baked.nodes())
-        if (auto added = scene.add_node(scene::kNone, node.world); !added) return tl::unexpected(added.error());
+        if (auto added = scene.add_node(scene::kNone, node.world); !added) return added.error();
     const auto masks = baked.tree().layer_masks();
     for (std::size_t i = 0; i < baked.instances().size(); ++i) {
         const bake::InstanceRecord& instance = baked.instances()[i];
         if (instance.mesh == scene::kNone) continue;
         const auto added = scene.add_instance(instance.node, instance.mesh);
-        if (!added) return tl::unexpected(added.error());
+        if (!added) return added.error();
         if (i < masks.size())
             if (auto set = scene.set_instance_layers(*added, masks[i]); !set) return set;
     }
@@ -102,9 +102,9 @@ Result<SceneSource> load_baked(const std::string& path, const LoadOptions& optio
     std::uint64_t triangles = 0;
     for (scene::MeshId i = 0; i < baked->mesh_count(); ++i) triangles += baked->mesh(i).indices.size() / 3;
     if (triangles > options.limits.triangles)
-        return in_file(path, "", over_limit("triangles", options.limits.triangles).value());
+        return in_file(path, "", over_limit("triangles", options.limits.triangles));
     if (baked->nodes().size() > options.limits.nodes)
-        return in_file(path, "", over_limit("nodes", options.limits.nodes).value());
+        return in_file(path, "", over_limit("nodes", options.limits.nodes));
     if (auto filled = fill(*baked, source.scene); !filled) return in_file(path, "", filled.error());
     take_looks(*baked, source);
     take_clusters(*baked, source);

@@ -27,7 +27,7 @@ struct RoomRecord {
 };
 static_assert(sizeof(RoomRecord) == 88);
 
-tl::unexpected<Error> damaged(const char* section, const char* what, std::uint64_t item = kNoItem) {
+Error damaged(const char* section, const char* what, std::uint64_t item = kNoItem) {
     return fail(ErrorCode::parse, item, std::string("section '") + section + "': " + what);
 }
 
@@ -93,9 +93,9 @@ void add_visit(const SceneSource& source, bake::Writer& writer) {
 Result<void> read_glow(const bake::Reader& reader, SceneSource& source) {
     if (!reader.has(kGlow)) return {};
     const auto glow = reader.section<glm::vec3>(kGlow);
-    if (!glow) return tl::unexpected(glow.error());
+    if (!glow) return glow.error();
     const auto ends = reader.section<std::uint64_t>(kGlowEnds);
-    if (!ends) return tl::unexpected(ends.error());
+    if (!ends) return ends.error();
     if (ends->size() > source.scene.mesh_count() || ends->empty() || ends->back() != glow->size())
         return damaged(kGlowEnds, "not the scene's meshes");
     std::uint64_t begin = 0;
@@ -134,7 +134,7 @@ Result<Vector<std::byte>> bake_source(const SceneSource& source, Executor& execu
     const auto file = bake::bake(source.scene, executor, options);
     if (!file) return file;
     const auto reader = bake::Reader::open(*file, executor);
-    if (!reader) return tl::unexpected(reader.error());
+    if (!reader) return reader.error();
     bake::Writer writer;
     for (const bake::Section& section : reader->sections())
         writer.add_bytes(name_of(section), std::span(*file).subspan(section.offset, section.size),
@@ -145,11 +145,11 @@ Result<Vector<std::byte>> bake_source(const SceneSource& source, Executor& execu
 
 Result<void> read_visit(std::span<const std::byte> file, SceneSource& source) {
     const auto reader = bake::Reader::open(file);
-    if (!reader) return tl::unexpected(reader.error());
+    if (!reader) return reader.error();
     source.unit = 0.0;  // older files do not say it
     if (reader->has(kHead)) {
         const auto head = reader->section<VisitHead>(kHead);
-        if (!head) return tl::unexpected(head.error());
+        if (!head) return head.error();
         if (head->size() != 1) return damaged(kHead, "not one header");
         const float unit = head->front().unit;
         if (!std::isfinite(unit) || unit < 0.0f) return damaged(kHead, "a unit of length is no length");
@@ -157,14 +157,14 @@ Result<void> read_visit(std::span<const std::byte> file, SceneSource& source) {
     }
     if (reader->has(kWalk)) {
         const auto walk = reader->section<glm::dvec3>(kWalk);
-        if (!walk) return tl::unexpected(walk.error());
+        if (!walk) return walk.error();
         for (std::size_t i = 0; i < walk->size(); ++i)
             if (!is_finite((*walk)[i])) return damaged(kWalk, "a place is no number", i);
         source.walk.assign(walk->begin(), walk->end());
     }
     if (reader->has(kRooms)) {
         const auto rooms = reader->section<RoomRecord>(kRooms);
-        if (!rooms) return tl::unexpected(rooms.error());
+        if (!rooms) return rooms.error();
         for (std::size_t i = 0; i < rooms->size(); ++i) {
             if (!is_room((*rooms)[i])) return damaged(kRooms, "a room's corner or height is no number", i);
             source.rooms.push_back(room_of((*rooms)[i]));

@@ -50,7 +50,7 @@ class City {
             PartList* list = list_for(fs::path(name).stem().string());
             if (list == nullptr) continue;
             auto part = read_part((folder_ / name).string());
-            if (!part) return tl::unexpected(part.error());
+            if (!part) return part.error();
             list->push_back(std::move(*part));
         }
         if (roads_.empty() || buildings_.empty())
@@ -108,7 +108,7 @@ class City {
     Result<Part> read_part(const std::string& file) {
         LoadOptions options = options_;
         auto source = load_gltf(file, options);
-        if (!source) return tl::unexpected(source.error());
+        if (!source) return source.error();
         source->scene.update();
         Part part;
         for (scene::InstanceId i = 0; i < source->scene.instance_count(); ++i) {
@@ -232,7 +232,7 @@ Result<SceneSource> make_city(const std::string& folder, const LoadOptions& opti
     const std::string name = fs::path(folder).lexically_normal().filename().string();
     SceneMaker maker(name.empty() ? "city" : name, options);
     City made(maker, folder, options);
-    if (auto read = made.read(); !read) return tl::unexpected(read.error());
+    if (auto read = made.read(); !read) return read.error();
     maker.scale(kTileMetres / made.tile());
     made.compose();
     return maker.take(made.walk());

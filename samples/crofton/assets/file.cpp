@@ -24,7 +24,7 @@ struct Close {
 };
 using File = std::unique_ptr<std::FILE, Close>;
 
-tl::unexpected<Error> system_error(const std::string& path, const char* what) {
+Error system_error(const std::string& path, const char* what) {
     return fail(ErrorCode::io, kNoItem, path + ": " + what + ": " + std::strerror(errno));
 }
 
@@ -49,7 +49,7 @@ Result<std::string> read_open(File file, const std::string& path, std::uint64_t 
     std::string contents;
     char block[1 << 16];
     for (std::size_t count; (count = std::fread(block, 1, sizeof block, file.get())) > 0;) {
-        if (contents.size() + count > limit) return in_file(path, "", over_limit("bytes", limit).value());
+        if (contents.size() + count > limit) return in_file(path, "", over_limit("bytes", limit));
         contents.append(block, count);
     }
     if (std::ferror(file.get())) return system_error(path, "cannot read");
@@ -91,7 +91,7 @@ Result<std::string> read_file(const std::string& path, std::uint64_t limit) {
 
 Result<std::string> read_file_below(const std::string& folder, const std::string& name, std::uint64_t limit) {
     const auto path = path_below(folder, name);
-    if (!path) return tl::unexpected(path.error());
+    if (!path) return path.error();
     // Opening does not wait for the other end of a pipe; what was opened is what is looked at.
     const int number = ::open(path->c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     File file(number < 0 ? nullptr : ::fdopen(number, "rb"));
@@ -137,9 +137,9 @@ Result<void> check_writable(const std::string& path) {
     return {};
 }
 
-tl::unexpected<Error> in_file(const std::string& path, const std::string& what, Error error) {
+Error in_file(const std::string& path, const std::string& what, Error error) {
     error.message = path + ": " + (what.empty() ? "" : what + ": ") + error.message;
-    return tl::unexpected<Error>(std::move(error));
+    return error;
 }
 
 std::string file_name(const std::string& path) {

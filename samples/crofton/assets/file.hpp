@@ -32,7 +32,7 @@ namespace crofton::assets {
 [[nodiscard]] Result<void> check_writable(const std::string& path);
 
 // The same error with "path: what: " before its message, `what` left out where empty.
-[[nodiscard]] tl::unexpected<Error> in_file(const std::string& path, const std::string& what, Error error);
+[[nodiscard]] Error in_file(const std::string& path, const std::string& what, Error error);
 
 // The name without folders, and in lower case the part behind its last dot.
 [[nodiscard]] std::string file_name(const std::string& path);

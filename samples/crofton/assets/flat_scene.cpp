@@ -17,7 +17,7 @@ std::uint64_t instanced_triangles(const scene::Scene& scene) {
 Result<FlatScene> flat_scene(const SceneSource& source, const ReadLimits& limits) {
     const scene::Scene& scene = source.scene;
     if (instanced_triangles(scene) > limits.triangles)
-        return in_file(source.name, "its instances have", over_limit("triangles", limits.triangles).value());
+        return in_file(source.name, "its instances have", over_limit("triangles", limits.triangles));
     FlatScene all;
     for (scene::InstanceId i = 0; i < scene.instance_count(); ++i) {
         if (scene.is_removed(i)) continue;

@@ -91,7 +91,7 @@ Result<void> TexturePyramid::decode(std::string_view bytes, const ReadLimits& li
     if (static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) > limits.pixels)
         return fail(ErrorCode::budget_exceeded, kNoItem,
                     std::to_string(width) + " x " + std::to_string(height) + " is " +
-                        over_limit("pixels", limits.pixels).value().message);
+                        over_limit("pixels", limits.pixels).message);
     unsigned char* pixels = stbi_load_from_memory(data, length, &width, &height, &channels, 4);
     if (!pixels) return fail(ErrorCode::parse, kNoItem, "damaged, not an image we can read");
     levels_.push_back(finest(pixels, width, height));
@@ -121,7 +121,7 @@ glm::vec3 TexturePyramid::sample(const glm::vec2& uv, float width) const {
 Result<void> MaterialColors::decode(std::size_t image, TexturePyramid& pyramid) {
     if (texels_ >= document_.limits.pixels) return over_limit("pixels", document_.limits.pixels);
     const auto bytes = image_bytes(document_, image, folder_, bytes_read_);
-    if (!bytes) return tl::unexpected(bytes.error());
+    if (!bytes) return bytes.error();
     if (auto decoded = pyramid.decode(*bytes, document_.limits); !decoded) return decoded;
     texels_ += pyramid.texels();
     return {};

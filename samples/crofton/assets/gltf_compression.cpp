@@ -20,7 +20,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::string_view kDraco = "KHR_draco_mesh_compression", kMeshopt = "EXT_meshopt_compression",
                            kNewMeshopt = "KHR_meshopt_compression";
 
-tl::unexpected<Error> bad(const char* why) {
+Error bad(const char* why) {
     return fail(ErrorCode::parse, kNoItem, why);
 }
 
@@ -73,7 +73,7 @@ bool has_plain_accessors(const GltfDocument& document, const Json& primitive) {
 // The library asserts what it needs: everything is checked here first.
 Result<std::string> decode_meshopt(const GltfDocument& document, const Json& view) {
     const auto from = bytes_at(document, view);
-    if (!from) return tl::unexpected(from.error());
+    if (!from) return from.error();
     const auto count = whole_number(view, "count", 0), stride = whole_number(view, "byteStride", 0);
     if (!count || !stride || *stride == 0 || *stride > 256) return bad("its count or stride is damaged");
     if (*count > document.limits.bytes / *stride) return over_limit("bytes", document.limits.bytes);
@@ -159,7 +159,7 @@ Result<void> decode_draco(GltfDocument& document, Json& primitive, const Json& c
     const Json* place = view ? entry(document.root, "bufferViews", *view) : nullptr;
     if (!place) return bad("its buffer view does not exist");
     const auto from = bytes_at(document, *place);
-    if (!from) return tl::unexpected(from.error());
+    if (!from) return from.error();
     draco::DecoderBuffer buffer;
     buffer.Init(from->data(), from->size());
     draco::Decoder decoder;
@@ -182,7 +182,7 @@ Result<void> decode_draco(GltfDocument& document, Json& primitive, const Json& c
         const Json* old = number ? entry(document.root, "accessors", *number) : nullptr;
         if (!attribute || !old) return bad("an attribute does not exist");
         const auto made = plain_accessor(document, *attribute, points, Json(*old));
-        if (!made) return tl::unexpected(made.error());
+        if (!made) return made.error();
         plain[item.key()] = *made;
     }
     std::string indices;

@@ -147,20 +147,20 @@ Result<void> check_counts(const GltfDocument& document) {
 
 Result<GltfDocument> read_document(std::string_view file, const std::string& path, const DocumentOptions& options) {
     const auto opened = open_file(file, path);
-    if (!opened) return tl::unexpected(opened.error());
+    if (!opened) return opened.error();
     const Container& container = *opened;
-    if (auto shape = check_json_shape(container.json, options.limits); !shape) return tl::unexpected(shape.error());
+    if (auto shape = check_json_shape(container.json, options.limits); !shape) return shape.error();
     auto root = parse_json(container.json);
-    if (!root) return tl::unexpected(root.error());
+    if (!root) return root.error();
     GltfDocument document;
     document.root = std::move(*root);
     document.other_chunks = container.other_chunks;
     document.limits = options.limits;
     document.bytes_read = file.size();
     if (auto read = read_buffers(document, folder(path), container.binary, options.whole_buffers); !read)
-        return tl::unexpected(read.error());
-    if (auto plain = decompress(document, options.plain_copies); !plain) return tl::unexpected(plain.error());
-    if (auto counts = check_counts(document); !counts) return tl::unexpected(counts.error());
+        return read.error();
+    if (auto plain = decompress(document, options.plain_copies); !plain) return plain.error();
+    if (auto counts = check_counts(document); !counts) return counts.error();
     if (options.images) take_in_images(document, folder(path));
     return document;
 }
@@ -215,7 +215,7 @@ Result<std::size_t> whole_number(const Json& object, const char* key, std::size_
 
 Result<GltfDocument> read_gltf_document(const std::string& path, const DocumentOptions& options) {
     const auto file = read_file(path, options.limits.bytes);
-    if (!file) return tl::unexpected(file.error());
+    if (!file) return file.error();
     auto document = read_document(*file, path, options);
     if (!document) return in_file(path, "", document.error());
     return document;

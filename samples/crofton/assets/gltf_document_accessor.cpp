@@ -10,7 +10,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-tl::unexpected<Error> bad(ErrorCode code, std::string why) {
+Error bad(ErrorCode code, std::string why) {
     return fail(code, kNoItem, std::move(why));
 }
 
@@ -29,8 +29,8 @@ int components_of(const Json& accessor) {
 Result<void> locate(const GltfDocument& document, const Json& reference, ElementLayout& layout) {
     const auto number = whole_number(reference, "bufferView", kNoNumber),
                offset = whole_number(reference, "byteOffset", 0);
-    if (!number) return tl::unexpected(number.error());
-    if (!offset) return tl::unexpected(offset.error());
+    if (!number) return number.error();
+    if (!offset) return offset.error();
     const Json* view = entry(document.root, "bufferViews", *number);
     if (!view) return bad(ErrorCode::out_of_range, "its buffer view does not exist");
     if (const Json* extensions = member(*view, "extensions"); extensions && extensions->is_object())
@@ -40,7 +40,7 @@ Result<void> locate(const GltfDocument& document, const Json& reference, Element
     const auto buffer = whole_number(*view, "buffer", kNoNumber), begin = whole_number(*view, "byteOffset", 0),
                length = whole_number(*view, "byteLength", 0), stride = whole_number(*view, "byteStride", 0);
     for (const auto* value : {&buffer, &begin, &length, &stride})
-        if (!*value) return tl::unexpected(value->error());
+        if (!*value) return value->error();
     if (*buffer >= document.buffers.size()) return bad(ErrorCode::out_of_range, "its view has no buffer");
     const std::string& bytes = document.buffers[*buffer];
     layout.buffer = {reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()};
@@ -53,7 +53,7 @@ Result<void> locate(const GltfDocument& document, const Json& reference, Element
 
 Result<int> component_type_of(const Json& object) {
     const auto type = whole_number(object, "componentType", 0);
-    if (!type) return tl::unexpected(type.error());
+    if (!type) return type.error();
     return *type <= kGltfDouble ? static_cast<int>(*type) : 0;
 }
 
@@ -65,17 +65,17 @@ Result<void> apply_sparse(const GltfDocument& document, const Json& sparse, cons
     if (!count || !indices || !values) return bad(ErrorCode::parse, "its sparse part is damaged");
     ElementLayout index_layout, value_layout = dense;
     const auto type = component_type_of(*indices);
-    if (!type) return tl::unexpected(type.error());
+    if (!type) return type.error();
     index_layout.component_type = *type;
     index_layout.components = 1;
     index_layout.count = value_layout.count = *count;
     if (auto found = locate(document, *indices, index_layout); !found) return found;
     if (auto found = locate(document, *values, value_layout); !found) return found;
     const auto placed_indices = place(index_layout), placed_values = place(value_layout);
-    if (!placed_indices) return tl::unexpected(placed_indices.error());
-    if (!placed_values) return tl::unexpected(placed_values.error());
+    if (!placed_indices) return placed_indices.error();
+    if (!placed_values) return placed_values.error();
     const auto numbers = to_indices(*placed_indices);
-    if (!numbers) return tl::unexpected(numbers.error());
+    if (!numbers) return numbers.error();
     for (std::size_t i = 0; i < numbers->size(); ++i) {
         if ((*numbers)[i] >= dense.count)
             return bad(ErrorCode::out_of_range, "its sparse part replaces element " + std::to_string((*numbers)[i]) +
@@ -98,8 +98,7 @@ Result<Elements> assemble(const GltfDocument& document, const Json& description,
             std::memcpy(storage.data() + i * element, base->data + i * base->stride, element);
     }
     if (const Json* sparse = member(description, "sparse"))
-        if (auto done = apply_sparse(document, *sparse, layout, element, storage); !done)
-            return tl::unexpected(done.error());
+        if (auto done = apply_sparse(document, *sparse, layout, element, storage); !done) return done.error();
     return Elements{reinterpret_cast<const unsigned char*>(storage.data()),
                     layout.count,
                     element,
@@ -115,8 +114,8 @@ Result<Elements> find(const GltfDocument& document, std::size_t accessor, std::o
     ElementLayout layout;
     const auto type = component_type_of(*description);
     const auto given = whole_number(*description, "count", 0);
-    if (!type) return tl::unexpected(type.error());
-    if (!given) return tl::unexpected(given.error());
+    if (!type) return type.error();
+    if (!given) return given.error();
     if (count && *given != *count)
         return bad(ErrorCode::out_of_range,
                    std::to_string(*given) + " elements for " + std::to_string(*count) + " vertices");
@@ -127,12 +126,12 @@ Result<Elements> find(const GltfDocument& document, std::size_t accessor, std::o
         layout.normalized = normalized->is_boolean() && normalized->get<bool>();
     const bool has_view = member(*description, "bufferView") != nullptr;
     if (has_view)
-        if (auto found = locate(document, *description, layout); !found) return tl::unexpected(found.error());
+        if (auto found = locate(document, *description, layout); !found) return found.error();
     if (has_view && !member(*description, "sparse")) return place(layout);
     // Without a view nothing in the file bounds how many zeros it asks for.
     if (!has_view && *given > document.limits.triangles)
         return bad(ErrorCode::budget_exceeded, std::to_string(*given) + " elements without a buffer view: " +
-                                                   over_limit("triangles", document.limits.triangles).value().message);
+                                                   over_limit("triangles", document.limits.triangles).message);
     if (!has_view && *given == 0) return bad(ErrorCode::empty, "holds nothing");
     if (has_view)
         if (const auto base = place(layout); !base) return base;

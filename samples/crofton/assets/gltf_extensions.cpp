@@ -41,8 +41,7 @@ class ExtensionCheck {
     Result<std::vector<std::string>> run() {
         for (std::size_t i = 0; const Json* name = entry(root_, "extensionsRequired", i); ++i)
             if (name->is_string())
-                if (auto done = check_required(name->get_ref<const std::string&>()); !done)
-                    return tl::unexpected(done.error());
+                if (auto done = check_required(name->get_ref<const std::string&>()); !done) return done.error();
         for (const auto& [list, what] : {std::pair("scenes", "scene"),
                                          {"nodes", "node"},
                                          {"meshes", "mesh"},

@@ -28,7 +28,7 @@ Result<std::string> bytes_of(const std::string& uri, const std::string& folder, 
     if (bytes)
         bytes_read += bytes->size();
     else if (bytes.error().code == ErrorCode::budget_exceeded)
-        return in_file(folder + name, "with the files read before", over_limit("bytes", limit).value());
+        return in_file(folder + name, "with the files read before", over_limit("bytes", limit));
     return bytes;
 }
 
@@ -46,7 +46,7 @@ class FilesBeside {
                 Error error = read.error();
                 error.item = i;
                 error.message = "buffer " + std::to_string(i) + ": " + error.message;
-                if (whole || error.code == ErrorCode::budget_exceeded) return tl::unexpected<Error>(std::move(error));
+                if (whole || error.code == ErrorCode::budget_exceeded) return error;
                 document_.warnings.push_back(error.message);
             }
             document_.buffers.push_back(std::move(bytes));
@@ -69,12 +69,12 @@ class FilesBeside {
                              std::string& bytes) {
         if (!description.is_object()) return fail(ErrorCode::parse, kNoItem, "is no object");
         const auto length = whole_number(description, "byteLength", 0);
-        if (!length) return tl::unexpected(length.error());
+        if (!length) return length.error();
         const std::string* uri = uri_of(description);
         if (!uri && !binary) return {};
         auto read =
             uri ? bytes_of(*uri, folder_, document_.limits.bytes, document_.bytes_read) : Result<std::string>(*binary);
-        if (!read) return tl::unexpected(read.error());
+        if (!read) return read.error();
         bytes = std::move(*read);
         if (bytes.size() < *length)
             return fail(ErrorCode::out_of_range, kNoItem,

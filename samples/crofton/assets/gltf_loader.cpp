@@ -77,8 +77,8 @@ class GltfReader {
 
     Result<SceneSource> read() {
         auto lacks = check_extensions(document_);  // told last: it is no reason to show nothing
-        if (!lacks) return tl::unexpected(lacks.error());
-        if (auto walked = add_nodes(); !walked) return tl::unexpected(walked.error());
+        if (!lacks) return lacks.error();
+        if (auto walked = add_nodes(); !walked) return walked.error();
         if (source_.scene.instance_count() == 0)
             return fail(ErrorCode::empty, kNoItem,
                         "its scene shows no triangles, so there is nothing to draw: " + why_empty());
@@ -166,7 +166,7 @@ class GltfReader {
                 continue;
             }
             const auto added = add_node(name, *node, *local, todo.parent);
-            if (!added) return tl::unexpected(added.error());
+            if (!added) return added.error();
             const auto children = indices_of(*node, "children", name);
             for (auto child = children.rbegin(); child != children.rend(); ++child) stack.push_back({*child, *added});
         }
@@ -179,7 +179,7 @@ class GltfReader {
         const auto id =
             source_.scene.add_node(parent, local, ~0u, own && own->is_string() ? own->get<std::string>() : "");
         if (!id || !member(node, "mesh")) return id;
-        if (auto added = add_instances(name, node, *id); !added) return tl::unexpected(added.error());
+        if (auto added = add_instances(name, node, *id); !added) return added.error();
         return id;
     }
 
@@ -191,7 +191,7 @@ class GltfReader {
             return {};
         }
         const auto made = meshes_of(*shape);
-        if (!made) return tl::unexpected(made.error());
+        if (!made) return made.error();
         const ShapeMeshes& meshes = **made;
         const Json* instancing = instancing_of(node);
         if (instancing && shape->skin != kNoNumber) {
@@ -209,16 +209,16 @@ class GltfReader {
         const auto mesh = as_whole_number(*member(node, "mesh"));
         if (!mesh || !entry(root_, "meshes", *mesh)) return fail(ErrorCode::out_of_range, kNoItem, "does not exist");
         auto weights = morph_weights(node, *entry(root_, "meshes", *mesh));
-        if (!weights) return tl::unexpected(weights.error());
+        if (!weights) return weights.error();
         const auto skin = whole_number(node, "skin", kNoNumber);
-        if (!skin) return tl::unexpected(skin.error());
+        if (!skin) return skin.error();
         return Shape{*mesh, *skin, std::move(*weights)};
     }
 
     Result<void> add_meshes(scene::NodeId node, const ShapeMeshes& meshes) {
         for (const scene::MeshId part : meshes.ids) {
             if (source_.scene.instance_count() >= limits_.nodes) return over_limit("nodes", limits_.nodes);
-            if (auto added = source_.scene.add_instance(node, part); !added) return tl::unexpected(added.error());
+            if (auto added = source_.scene.add_instance(node, part); !added) return added.error();
         }
         return {};
     }
@@ -230,7 +230,7 @@ class GltfReader {
         if (source_.scene.node_count() >= limits_.nodes) return over_limit("nodes", limits_.nodes);
         const std::string name(source_.scene.node_name(like));
         const auto node = source_.scene.add_node(parent, place, ~0u, name);
-        if (!node) return tl::unexpected(node.error());
+        if (!node) return node.error();
         return add_meshes(*node, meshes);
     }
 
@@ -238,7 +238,7 @@ class GltfReader {
                                 const ShapeMeshes& meshes) {
         if (meshes.ids.empty()) return {};
         const auto places = placements(document_, instancing);
-        if (!places && places.error().code == ErrorCode::budget_exceeded) return tl::unexpected(places.error());
+        if (!places && places.error().code == ErrorCode::budget_exceeded) return places.error();
         if (!places) {
             leave_out(name + ": EXT_mesh_gpu_instancing", places.error());
             return {};
@@ -263,12 +263,12 @@ class GltfReader {
         const std::string mesh_name = own && own->is_string() ? own->get<std::string>() : "";
         ShapeMeshes made;
         for (std::size_t p = 0; const Json* primitive = entry(mesh, "primitives", p); ++p) {
-            if (auto in_time = deadline_.check(); !in_time) return tl::unexpected(in_time.error());
+            if (auto in_time = deadline_.check(); !in_time) return in_time.error();
             const std::string name = label("mesh", shape.mesh, mesh) + ": primitive " + std::to_string(p);
             auto read = mesh_of(*primitive, shape, mesh_name, name, made);
             if (triangles_ > limits_.triangles || vertices_ / 3 > limits_.triangles)
                 return over_limit("triangles", limits_.triangles);
-            auto id = read ? source_.scene.add_mesh(std::move(*read), mesh_name) : tl::unexpected(read.error());
+            auto id = read ? source_.scene.add_mesh(std::move(*read), mesh_name) : read.error();
             if (!id) {
                 leave_out(name, id.error());
                 continue;
@@ -311,13 +311,13 @@ class GltfReader {
         if (const std::string reason = reason_to_draw_nothing(primitive); !reason.empty())
             return fail(ErrorCode::unsupported, kNoItem, reason);
         auto read = read_primitive(document_, primitive, {0.0, std::numeric_limits<double>::infinity()});
-        if (!read) return tl::unexpected(read.error());
+        if (!read) return read.error();
         if (read->mesh.indices.empty()) return fail(ErrorCode::empty, kNoItem, "has no triangles");
         TriangleMesh mesh = std::move(read->mesh);
         // Each way in which a mesh is bent is a mesh of its own.
         triangles_ += mesh.triangle_count();
         vertices_ += mesh.positions.size();
-        if (auto bent = bend(primitive, shape, siblings, mesh); !bent) return tl::unexpected(bent.error());
+        if (auto bent = bend(primitive, shape, siblings, mesh); !bent) return bent.error();
         const auto values = [&](const char* attribute, int components) -> std::vector<float> {
             const Json* accessor = member(primitive.at("attributes"), attribute);
             if (!accessor) return {};
@@ -343,7 +343,7 @@ class GltfReader {
             if (auto done = apply_morph(document_, primitive, shape.weights, deadline_, positions); !done) return done;
         if (shape.skin != kNoNumber) {
             const auto joints = skins_.joints(shape.skin);
-            if (!joints) return tl::unexpected(joints.error());
+            if (!joints) return joints.error();
             if (auto done = apply_skin(document_, primitive, *joints, positions); !done) return done;
             if (siblings.ids.empty()) siblings.origin = origin_of(positions);
         }
@@ -369,7 +369,7 @@ class GltfReader {
 Result<SceneSource> load_gltf(const std::string& path, const LoadOptions& options) {
     const auto document = read_gltf_document(
         path, {.limits = options.limits, .images = false, .whole_buffers = options.strict, .plain_copies = true});
-    if (!document) return tl::unexpected(document.error());
+    if (!document) return document.error();
     auto source = GltfReader(path, *document, options).read();
     if (!source) return in_file(path, "", source.error());
     return source;

@@ -58,7 +58,7 @@ Result<Transform> transform_of(const Json& node) {
     const auto matrix = numbers(node, "matrix", 16), translation = numbers(node, "translation", 3),
                turn = numbers(node, "rotation", 4), scale = numbers(node, "scale", 3);
     for (const auto* part : {&matrix, &translation, &turn, &scale})
-        if (!*part) return tl::unexpected(part->error());
+        if (!*part) return part->error();
     if (*matrix) {
         glm::dmat4 m;
         for (int i = 0; i < 16; ++i) m[i / 4][i % 4] = (**matrix)[static_cast<std::size_t>(i)];
@@ -92,11 +92,11 @@ Result<Placements> placements(const GltfDocument& document, const Json& instanci
         return fail(ErrorCode::parse, kNoItem, "has no attributes");
     std::optional<std::size_t> count;
     const auto translation = attribute(document, *attributes, "TRANSLATION", 3, count);
-    if (!translation) return tl::unexpected(translation.error());
+    if (!translation) return translation.error();
     const auto turn = attribute(document, *attributes, "ROTATION", 4, count);
-    if (!turn) return tl::unexpected(turn.error());
+    if (!turn) return turn.error();
     const auto scale = attribute(document, *attributes, "SCALE", 3, count);
-    if (!scale) return tl::unexpected(scale.error());
+    if (!scale) return scale.error();
     // Attributes of one's own count the instances, too.
     for (const auto& item : attributes->items())
         if (const auto own = whole_number(*attributes, item.key().c_str(), kNoNumber); !count && own)

@@ -115,7 +115,7 @@ class PatchRun {
     PatchRun(GltfDocument& document, const PatchSettings& settings) : document_(document), settings_(settings) {}
 
     Result<std::vector<PrimitivePatches>> run() {
-        if (auto done = gather(); !done) return tl::unexpected(done.error());
+        if (auto done = gather(); !done) return done.error();
         const OwnBytes own(document_);
         bool go_on = true;
         for (std::size_t g = 0; g < groups_.size(); ++g) {
@@ -123,7 +123,7 @@ class PatchRun {
                 groups_[g].outcome.left_alone = kNotReached;
                 continue;
             }
-            if (auto done = solve(groups_[g]); !done) return tl::unexpected(done.error());
+            if (auto done = solve(groups_[g]); !done) return done.error();
             if (settings_.progress) go_on = settings_.progress(g + 1, groups_.size());
         }
         std::vector<PrimitivePatches> result(count_);

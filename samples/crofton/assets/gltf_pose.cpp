@@ -11,9 +11,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-tl::unexpected<Error> in(const std::string& what, Error error) {
+Error in(const std::string& what, Error error) {
     error.message = what + ": " + error.message;
-    return tl::unexpected<Error>(std::move(error));
+    return error;
 }
 
 // More joints than 64 a vertex is no skin, but a file that asks for much.
@@ -25,7 +25,7 @@ Result<std::vector<float>> vertex_values(const GltfDocument& document, const Jso
     if (!number) return fail(ErrorCode::parse, kNoItem, "names no accessor");
     std::string storage;
     const auto elements = accessor_elements(document, *number, count, storage);
-    if (!elements) return tl::unexpected(elements.error());
+    if (!elements) return elements.error();
     if (elements->components != components)
         return fail(ErrorCode::parse, kNoItem, "not of " + std::to_string(components) + " components");
     const int type = elements->component_type;
@@ -135,7 +135,7 @@ Result<std::span<const Transform>> SkinPoses::joints(std::size_t skin) {
         if (!made) made = in("skin " + std::to_string(skin), made.error());
         known = joints_.emplace(skin, std::move(made)).first;
     }
-    if (!known->second) return tl::unexpected<Error>(known->second.error());
+    if (!known->second) return known->second.error();
     return std::span<const Transform>(*known->second);
 }
 
@@ -191,7 +191,7 @@ Result<Transform> SkinPoses::below_parent(std::size_t node) const {
 Result<void> apply_skin(const GltfDocument& document, const Json& primitive, std::span<const Transform> joints,
                         std::span<glm::dvec3> positions) {
     const auto sets = influences_of(document, primitive, positions.size());
-    if (!sets) return tl::unexpected(sets.error());
+    if (!sets) return sets.error();
     for (std::size_t v = 0; v < positions.size(); ++v) {
         glm::dvec3 sum(0.0);
         double total = 0.0;

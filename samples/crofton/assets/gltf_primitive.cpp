@@ -38,15 +38,14 @@ class PrimitiveReader {
         : document_(document), primitive_(primitive), tolerances_(tolerances) {}
 
     Result<PrimitiveGeometry> read() {
-        if (auto done = read_positions(); !done) return tl::unexpected(done.error());
-        if (auto done = read_indices(); !done) return tl::unexpected(done.error());
-        if (auto valid = validate(result_.mesh); !valid) return tl::unexpected(valid.error());
+        if (auto done = read_positions(); !done) return done.error();
+        if (auto done = read_indices(); !done) return done.error();
+        if (auto valid = validate(result_.mesh); !valid) return valid.error();
         result_.position_tolerance = patch_tolerance(result_.mesh, tolerances_.position);
         if (std::isinf(tolerances_.attribute)) return std::move(result_);
         for (const auto& item : primitive_.at("attributes").items()) {
             if (item.key() == "POSITION") continue;
-            if (auto done = read_values(item.key(), item.value(), tolerances_.attribute); !done)
-                return tl::unexpected(done.error());
+            if (auto done = read_values(item.key(), item.value(), tolerances_.attribute); !done) return done.error();
         }
         const Json* targets = member(primitive_, "targets");
         for (std::size_t i = 0; targets && targets->is_array() && i < targets->size(); ++i) {
@@ -62,9 +61,9 @@ class PrimitiveReader {
     }
 
   private:
-    static tl::unexpected<Error> in(const std::string& what, Error error) {
+    static Error in(const std::string& what, Error error) {
         error.message = what + ": " + error.message;
-        return tl::unexpected<Error>(std::move(error));
+        return error;
     }
 
     Result<Elements> elements(const Json& accessor, std::optional<std::size_t> count, std::string& storage) const {
@@ -100,7 +99,7 @@ class PrimitiveReader {
             std::iota(indices.begin(), indices.end(), 0u);
         }
         const auto mode = whole_number(primitive_, "mode", kGltfTriangles);
-        if (!mode) return tl::unexpected(mode.error());
+        if (!mode) return mode.error();
         if (*mode > kGltfTriangleFan)
             return fail(ErrorCode::parse, kNoItem, "mode " + std::to_string(*mode) + " is unknown");
         result_.mode = static_cast<int>(*mode);

@@ -47,7 +47,7 @@ Result<SceneSource> load_by_kind(const std::string& source, const LoadOptions& o
     if (source == "office") return make_office(options);
     if (source == "valley") return make_valley(options);
     if (source == "hall") return make_hall(options);
-    if (auto scene = refuse_regions(source); !scene) return tl::unexpected(scene.error());
+    if (auto scene = refuse_regions(source); !scene) return scene.error();
     std::error_code ignored;
     if (std::filesystem::is_directory(source, ignored)) {
         if (holds_city_parts(source)) return make_city(source, options);

@@ -230,17 +230,14 @@ class ObjReader {
         const std::string_view number = word.substr(0, word.find('/'));
         long long index = 0;
         if (!parse(number, index))
-            return tl::unexpected(
-                bad(ErrorCode::parse, "face: '" + std::string(word.substr(0, 40)) + "' is not a vertex").error());
+            return bad(ErrorCode::parse, "face: '" + std::string(word.substr(0, 40)) + "' is not a vertex").error();
         Corner corner{resolve(index, file_.positions.size())};
         if (corner.position == ObjFile::kNone)
-            return tl::unexpected(bad(ErrorCode::out_of_range, "face: vertex " + std::to_string(index) + " of " +
-                                                                   std::to_string(file_.positions.size()) +
-                                                                   file_.unknown_line)
-                                      .error());
+            return bad(ErrorCode::out_of_range, "face: vertex " + std::to_string(index) + " of " +
+                                                    std::to_string(file_.positions.size()) + file_.unknown_line)
+                .error();
         if (std::binary_search(bad_vertices_.begin(), bad_vertices_.end(), corner.position))
-            return tl::unexpected(
-                bad(ErrorCode::parse, "face: vertex " + std::to_string(index) + " makes no sense").error());
+            return bad(ErrorCode::parse, "face: vertex " + std::to_string(index) + " makes no sense").error();
         std::string_view rest = word.substr(number.size());
         corner.texcoord = optional_index(rest, file_.texcoords.size());
         corner.normal = optional_index(rest, file_.normals.size());
@@ -251,7 +248,7 @@ class ObjReader {
         face_.clear();
         for (std::string_view word = next_word(line); !word.empty(); word = next_word(line)) {
             const auto corner = read_corner(word);
-            if (!corner) return tl::unexpected(corner.error());
+            if (!corner) return corner.error();
             face_.push_back(*corner);
         }
         if (face_.size() < 3) return bad(ErrorCode::parse, "face: fewer than three vertices");
@@ -380,7 +377,7 @@ class ObjReader {
 
 Result<ObjFile> read_obj(const std::string& path, const ObjOptions& options) {
     const auto file = read_file(path, options.limits.bytes);
-    if (!file) return tl::unexpected(file.error());
+    if (!file) return file.error();
     if (auto readable = check_encoding(*file); !readable) return in_file(path, "", readable.error());
     return ObjReader(path, *file, options).read();
 }

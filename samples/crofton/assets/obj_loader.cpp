@@ -33,7 +33,7 @@ TriangleMesh mesh_of(const ObjFile& file, const ObjFile::Part& part, std::vector
 
 Result<SceneSource> load_obj(const std::string& path, const LoadOptions& options) {
     auto read = read_obj(path, {.largest = kMaxCoordinate, .limits = options.limits, .leave_out = !options.strict});
-    if (!read) return tl::unexpected(read.error());
+    if (!read) return read.error();
     ObjFile& file = *read;
     file.warnings.insert(file.warnings.end(), file.odd_faces.begin(), file.odd_faces.end());
     SceneSource source{file_name(path), scene::Scene({options.criterion}), {}, {}, std::move(file.warnings), {}};

@@ -20,7 +20,7 @@ struct ReadLimits {
     double seconds = 600.0;
 };
 
-[[nodiscard]] inline tl::unexpected<Error> over_limit(const char* what, std::uint64_t limit) {
+[[nodiscard]] inline Error over_limit(const char* what, std::uint64_t limit) {
     return fail(ErrorCode::budget_exceeded, kNoItem,
                 "more than " + std::to_string(limit) + " " + what + ", the limit: --max-" + what + " raises it");
 }

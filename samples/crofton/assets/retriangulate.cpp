@@ -33,16 +33,16 @@ class Retriangulation {
         scene::Scene made({load.criterion});
         for (scene::NodeId n = 0; n < from_.node_count(); ++n)
             if (auto added = made.add_node(from_.parent_of(n), from_.local(n), ~0u, from_.node_name(n)); !added)
-                return tl::unexpected(added.error());
+                return added.error();
         for (scene::MeshId m = 0; m < from_.mesh_count(); ++m) {
             const auto triangles = of_polygon(m);
             auto added = triangles ? made.add_polygon(*from_.polygon(m), *triangles, from_.mesh_name(m))
                                    : made.add_mesh(of_patches(m), from_.mesh_name(m));
-            if (!added) return tl::unexpected(added.error());
+            if (!added) return added.error();
         }
         for (scene::InstanceId i = 0; i < from_.instance_count(); ++i) {
             const auto added = made.add_instance(from_.node_of(i), from_.mesh_of(i));
-            if (!added) return tl::unexpected(added.error());
+            if (!added) return added.error();
         }
         return made;
     }
@@ -91,7 +91,7 @@ class Retriangulation {
 
 Result<void> retriangulate(SceneSource& source, const LoadOptions& options, triangulate::Method method) {
     auto made = Retriangulation(source.scene, method).run(options);
-    if (!made) return tl::unexpected(std::move(made.error()));
+    if (!made) return std::move(made.error());
     source.scene = std::move(*made);
     source.emission.clear();
     source.clusters.clear();

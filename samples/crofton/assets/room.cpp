@@ -73,12 +73,12 @@ MeshBuilder lamp() {
 Result<SceneSource> make_room(const LoadOptions& options) {
     SceneSource source{"room", scene::Scene({options.criterion}), {}, {}, {}, {}};
     const auto root = source.scene.add_node(scene::kNone, {}, ~0u, "room");
-    if (!root) return tl::unexpected(root.error());
+    if (!root) return root.error();
     for (MeshBuilder part : {shell(), furniture(), lamp()}) {
         source.emission.push_back(part.take_emission());
         const auto id = source.scene.add_mesh(part.take(), "room");
-        if (!id) return tl::unexpected(id.error());
-        if (auto added = source.scene.add_instance(*root, *id); !added) return tl::unexpected(added.error());
+        if (!id) return id.error();
+        if (auto added = source.scene.add_instance(*root, *id); !added) return added.error();
     }
     source.walk = {{0.7, 1.6, 3.4}, {4.3, 1.6, 3.4}, {4.3, 1.6, 0.6}, {1.0, 1.6, 0.6}};
     return source;

@@ -13,7 +13,7 @@ SceneMaker::SceneMaker(const std::string& name, const LoadOptions& options)
     if (root)
         root_ = *root;
     else
-        status_ = tl::unexpected(root.error());
+        status_ = root.error();
 }
 
 void SceneMaker::scale(double factor) {
@@ -25,7 +25,7 @@ scene::MeshId SceneMaker::add(TriangleMesh mesh, const std::string& name) {
     if (!status_) return scene::kNone;
     auto id = source_.scene.add_mesh(std::move(mesh), name);
     if (id) return *id;
-    status_ = tl::unexpected(id.error());
+    status_ = id.error();
     return scene::kNone;
 }
 
@@ -37,10 +37,10 @@ void SceneMaker::place(scene::MeshId mesh, const Transform& transform) {
     if (!status_ || !library.status()) return;
     const auto node = source_.scene.add_node(root_, transform);
     if (!node) {
-        status_ = tl::unexpected(node.error());
+        status_ = node.error();
         return;
     }
-    if (auto added = source_.scene.add_instance(*node, mesh); !added) status_ = tl::unexpected(added.error());
+    if (auto added = source_.scene.add_instance(*node, mesh); !added) status_ = added.error();
 }
 
 void SceneMaker::place(MeshBuilder& builder, const std::string& name) {
@@ -49,8 +49,8 @@ void SceneMaker::place(MeshBuilder& builder, const std::string& name) {
 }
 
 Result<SceneSource> SceneMaker::take(const std::vector<glm::dvec3>& walk) {
-    if (!status_) return tl::unexpected(status_.error());
-    if (!library.status()) return tl::unexpected(library.status().error());
+    if (!status_) return status_.error();
+    if (!library.status()) return library.status().error();
     source_.one_sided.assign(source_.scene.mesh_count(), 1);
     for (const scene::MeshId mesh : two_sided_)
         if (mesh < source_.one_sided.size()) source_.one_sided[mesh] = 0;

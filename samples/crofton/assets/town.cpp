@@ -118,7 +118,7 @@ Result<SceneSource> make_town(const LoadOptions& options) {
     SceneSource source{"town", scene::Scene({options.criterion}), {}, {}, {}, {}};
     const Transform turn = *from_trs({}, glm::angleAxis(kTurn, glm::dvec3(0, 1, 0)), glm::dvec3(1.0));
     const auto root = source.scene.add_node(scene::kNone, turn, ~0u, "town");
-    if (!root) return tl::unexpected(root.error());
+    if (!root) return root.error();
     const double blocks = std::max(1.0, std::round(wanted / kInstancesPerBlock));
     const int columns = static_cast<int>(std::ceil(std::sqrt(blocks))),
               rows = static_cast<int>(std::lround(blocks / columns));
@@ -129,8 +129,8 @@ Result<SceneSource> make_town(const LoadOptions& options) {
     fill_blocks(builder, library, grid);
     builder.add_countryside(grid);
     auto drivers = add_traffic(builder, library, grid, static_cast<int>(std::lround(kVehiclesPerBlock * blocks)));
-    if (!builder.status()) return tl::unexpected(builder.status().error());
-    if (!library.status()) return tl::unexpected(library.status().error());
+    if (!builder.status()) return builder.status().error();
+    if (!library.status()) return library.status().error();
 
     struct Crane {
         scene::NodeId node;

@@ -52,11 +52,11 @@ scene::NodeId Builder::place(const Parts& parts, const Transform& transform, sce
     if (!status_) return scene::kNone;
     const auto node = scene_.add_node(parent == scene::kNone ? root_ : parent, transform);
     if (!node) {
-        status_ = tl::unexpected(node.error());
+        status_ = node.error();
         return scene::kNone;
     }
     for (const scene::MeshId mesh : parts)
-        if (auto added = scene_.add_instance(*node, mesh); !added) status_ = tl::unexpected(added.error());
+        if (auto added = scene_.add_instance(*node, mesh); !added) status_ = added.error();
     return *node;
 }
 

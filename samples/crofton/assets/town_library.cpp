@@ -14,7 +14,7 @@ scene::MeshId Library::add(MeshBuilder& builder, std::string name) {
         emission[*id] = std::move(glow);
     }
     if (id) return *id;
-    status_ = tl::unexpected(id.error());
+    status_ = id.error();
     return scene::kNone;
 }
 
@@ -38,7 +38,7 @@ scene::MeshId Library::add_polygon(const std::vector<std::vector<glm::dvec2>>& r
     }
     auto id = scene_.add_polygon(std::move(polygon), triangulation->triangles, std::move(name));
     if (id) return *id;
-    status_ = tl::unexpected(id.error());
+    status_ = id.error();
     return scene::kNone;
 }
 

@@ -52,25 +52,25 @@ class UdmfReader {
         level_.units = kUnits;
         for (skip_space(); at_ < text_.size(); skip_space()) {
             std::string name;
-            if (auto done = word(name); !done) return tl::unexpected(done.error());
+            if (auto done = word(name); !done) return done.error();
             if (take('=')) {
-                if (auto done = value(); !done) return tl::unexpected(done.error());
+                if (auto done = value(); !done) return done.error();
                 continue;
             }
             if (!take('{')) return unexpected_character();
             block_line_ = line_;
-            if (auto done = fields(); !done) return tl::unexpected(done.error());
-            if (auto done = add(lower_case(name)); !done) return tl::unexpected(done.error());
+            if (auto done = fields(); !done) return done.error();
+            if (auto done = add(lower_case(name)); !done) return done.error();
         }
         return std::move(level_);
     }
 
   private:
-    tl::unexpected<Error> bad(std::size_t line, const std::string& why) const {
+    Error bad(std::size_t line, const std::string& why) const {
         return fail(ErrorCode::parse, line, "TEXTMAP: line " + std::to_string(line) + ": " + why);
     }
 
-    tl::unexpected<Error> unexpected_character() const {
+    Error unexpected_character() const {
         if (at_ >= text_.size()) return bad(line_, "ends too early");
         return bad(line_, std::string("'") + text_[at_] + "' is not expected here");
     }
@@ -116,7 +116,7 @@ class UdmfReader {
             }
             if (at_ < text_.size()) ++at_;
         } else if (auto done = word(result); !done) {
-            return tl::unexpected(done.error());
+            return done.error();
         }
         if (!take(';')) return unexpected_character();
         return result;
@@ -129,7 +129,7 @@ class UdmfReader {
             if (auto done = word(name); !done) return done;
             if (!take('=')) return unexpected_character();
             auto read = value();
-            if (!read) return tl::unexpected(read.error());
+            if (!read) return read.error();
             fields_[lower_case(name)] = std::move(*read);
         }
         return {};
@@ -150,13 +150,13 @@ class UdmfReader {
 
     Result<int> coordinate(const char* name) const {
         const auto read = number(name, kLargest);
-        if (!read) return tl::unexpected(read.error());
+        if (!read) return read.error();
         return static_cast<int>(std::round(*read * kUnits));
     }
 
     Result<int> height(const char* name, double otherwise) const {
         const auto read = number(name, kLargest, &otherwise);
-        if (!read) return tl::unexpected(read.error());
+        if (!read) return read.error();
         return static_cast<int>(std::round(*read));
     }
 
@@ -164,7 +164,7 @@ class UdmfReader {
     Result<std::uint32_t> index(const char* name, bool may_be_absent) const {
         constexpr double kNone = -1.0, kMost = 2147483647.0;
         const auto read = number(name, kMost, may_be_absent ? &kNone : nullptr);
-        if (!read) return tl::unexpected(read.error());
+        if (!read) return read.error();
         return *read < 0.0 ? kNoSide : static_cast<std::uint32_t>(*read);
     }
 
@@ -186,8 +186,8 @@ class UdmfReader {
 
     Result<void> add_vertex() {
         const auto x = coordinate("x"), y = coordinate("y");
-        if (!x) return tl::unexpected(x.error());
-        if (!y) return tl::unexpected(y.error());
+        if (!x) return x.error();
+        if (!y) return y.error();
         level_.vertices.push_back({*x, *y});
         return {};
     }
@@ -196,14 +196,14 @@ class UdmfReader {
         const auto from = index("v1", false), to = index("v2", false), right = index("sidefront", false),
                    left = index("sideback", true);
         for (const auto* read : {&from, &to, &right, &left})
-            if (!*read) return tl::unexpected(read->error());
+            if (!*read) return read->error();
         level_.lines.push_back({*from, *to, *right, *left});
         return {};
     }
 
     Result<void> add_side() {
         const auto sector = index("sector", false);
-        if (!sector) return tl::unexpected(sector.error());
+        if (!sector) return sector.error();
         level_.sides.push_back({*sector, texture("texturetop"), texture("texturebottom"), texture("texturemiddle")});
         return {};
     }
@@ -212,7 +212,7 @@ class UdmfReader {
         const auto floor = height("heightfloor", 0.0), ceiling = height("heightceiling", 0.0),
                    light = height("lightlevel", 160.0);
         for (const auto* read : {&floor, &ceiling, &light})
-            if (!*read) return tl::unexpected(read->error());
+            if (!*read) return read->error();
         level_.sectors.push_back(
             {*floor, *ceiling, std::clamp(*light, 0, 255), texture("texturefloor"), texture("textureceiling")});
         return {};

@@ -104,7 +104,7 @@ Result<Records> find_lump(std::string_view wad, const std::vector<Lump>& lumps, 
     for (std::size_t i = level + 1; i < lumps.size() && is_level_lump(lumps[i].name); ++i) {
         if (lumps[i].name != name) continue;
         const auto bytes = contents(wad, lumps, i);
-        if (!bytes) return tl::unexpected(bytes.error());
+        if (!bytes) return bytes.error();
         if (lumps[i].size % record != 0)
             return fail(ErrorCode::parse, i,
                         std::string(name) + ": its size is no multiple of " + std::to_string(record) + " bytes");
@@ -139,7 +139,7 @@ Result<WadLevel> read_binary(std::string_view wad, const std::vector<Lump>& lump
     const auto side = [](std::uint32_t number) { return number == 0xFFFF ? kNoSide : number; };
     const auto read = [&](std::string_view lump, std::size_t record, auto&& each) -> Result<void> {
         const auto records = find_lump(wad, lumps, begin, lump, record);
-        if (!records) return tl::unexpected(records.error());
+        if (!records) return records.error();
         for (std::size_t i = 0; i < records->count; ++i) each(records->bytes.substr(i * record, record));
         return {};
     };
@@ -160,13 +160,13 @@ Result<WadLevel> read_binary(std::string_view wad, const std::vector<Lump>& lump
         done = read("SECTORS", 26, [&](std::string_view b) {
             level.sectors.push_back({i16(b, 0), i16(b, 2), std::clamp(i16(b, 20), 0, 255), text(b, 4), text(b, 12)});
         });
-    if (!done) return tl::unexpected(done.error());
+    if (!done) return done.error();
     return level;
 }
 
 Result<WadLevel> read_text(std::string_view wad, const std::vector<Lump>& lumps, std::size_t begin) {
     const auto text = contents(wad, lumps, begin + 1);
-    if (!text) return tl::unexpected(text.error());
+    if (!text) return text.error();
     return read_udmf(*text);
 }
 
@@ -174,7 +174,7 @@ Result<WadLevel> read_text(std::string_view wad, const std::vector<Lump>& lumps,
 
 Result<std::vector<std::string>> list_levels(std::string_view wad) {
     const auto lumps = read_directory(wad);
-    if (!lumps) return tl::unexpected(lumps.error());
+    if (!lumps) return lumps.error();
     std::vector<std::string> names;
     for (const std::size_t i : level_begins(*lumps)) names.push_back((*lumps)[i].name);
     if (names.empty()) return fail(ErrorCode::empty, kNoItem, "holds no level");
@@ -183,7 +183,7 @@ Result<std::vector<std::string>> list_levels(std::string_view wad) {
 
 Result<WadLevel> read_level(std::string_view wad, const std::string& name) {
     const auto names = list_levels(wad);
-    if (!names) return tl::unexpected(names.error());
+    if (!names) return names.error();
     const auto lumps = read_directory(wad);
     std::string wanted = name.empty() ? names->front() : name;
     for (char& c : wanted)
@@ -199,7 +199,7 @@ Result<WadLevel> read_level(std::string_view wad, const std::string& name) {
     auto level = is_udmf(*lumps, *begin) ? read_text(wad, *lumps, *begin) : read_binary(wad, *lumps, *begin);
     if (!level) return fail(level.error().code, level.error().item, wanted + ": " + level.error().message);
     level->name = wanted;
-    if (auto good = check_level(*level); !good) return tl::unexpected(good.error());
+    if (auto good = check_level(*level); !good) return good.error();
     return level;
 }
 

@@ -43,7 +43,7 @@ class LevelBuilder {
 
     Result<SceneSource> build() {
         const auto root = source_.scene.add_node(scene::kNone, {}, ~0u, level_.name);
-        if (!root) return tl::unexpected(root.error());
+        if (!root) return root.error();
         root_ = *root;
         for (const WadLevel::Line& line : level_.lines) {
             const glm::dvec2 a = level_.position(line.from), b = level_.position(line.to);
@@ -52,11 +52,11 @@ class LevelBuilder {
         }
         const auto sectors = sector_polygons(level_);
         for (std::size_t s = 0; s < sectors.size(); ++s) {
-            if (auto good = check_limits(); !good) return tl::unexpected(good.error());
+            if (auto good = check_limits(); !good) return good.error();
             add_sector(s, sectors[s]);
         }
         for (std::size_t l = 0; l < level_.lines.size(); ++l) {
-            if (auto good = check_limits(); !good) return tl::unexpected(good.error());
+            if (auto good = check_limits(); !good) return good.error();
             add_walls(l);
         }
         order_walk();
@@ -230,7 +230,7 @@ class LevelBuilder {
 
 Result<SceneSource> load_wad(const std::string& path, const LoadOptions& options) {
     const auto bytes = read_file(path, options.limits.bytes);
-    if (!bytes) return tl::unexpected(bytes.error());
+    if (!bytes) return bytes.error();
     const auto level = read_level(*bytes, options.map);
     if (!level) return in_file(path, "", level.error());
     auto source = LevelBuilder(*level, options).build();

@@ -76,13 +76,13 @@ class RegionWriter {
         std::error_code unknown;
         if (!std::filesystem::exists(path_, unknown)) return {};
         const auto file = bake::MappedFile::open(path_, {.access = bake::FileAccess::read});
-        if (!file) return tl::unexpected(file.error());
+        if (!file) return file.error();
         auto earlier = region_state_from(file->bytes());
         if (earlier && (earlier->key != state_.key || earlier->regions != state_.regions))
             earlier = fail(ErrorCode::invalid_argument, kNoItem,
-                           "is of another scene, or of other options; remove it to begin anew");
+                           "is of another scene, or of other options; remove it to start again");
         if (!earlier && bake_.state.empty()) {
-            std::fprintf(stderr, "crofton: %s: %s: beginning anew\n", path_.c_str(), earlier.error().message.c_str());
+            std::fprintf(stderr, "crofton: %s: %s: starting again\n", path_.c_str(), earlier.error().message.c_str());
             return {};
         }
         if (!earlier) return fail(earlier.error().code, kNoItem, path_ + ": " + earlier.error().message);
@@ -107,7 +107,7 @@ class RegionWriter {
     // Any thread.
     Result<void> write(std::uint32_t place, const bake::BakeOptions& options) {
         const auto file = regions_.bake(place, options);
-        if (!file) return tl::unexpected(file.error());
+        if (!file) return file.error();
         RegionState::Done done{regions_.region(place), bake::checksum(*file)};
         done.file.bytes = file->size();
         std::string path = bake_.folder + "/" + done.file.name;
@@ -130,13 +130,13 @@ class RegionWriter {
     Result<void> save() {
         saved_ = Stopwatch();
         const auto file = to_file(state_);
-        return file ? bake::write_file(path_, *file) : tl::unexpected(file.error());
+        return file ? bake::write_file(path_, *file) : file.error();
     }
 
     // Requires that all regions are done.
     Result<void> write_index() {
         const auto file = bake::bake_region_index(files());
-        if (!file) return tl::unexpected(file.error());
+        if (!file) return file.error();
         if (auto written = bake::write_file(bake_.folder + "/" + bake::kRegionIndexName, *file); !written)
             return written;
         std::error_code remains;  // which would do no harm
@@ -195,7 +195,7 @@ Result<int> write_all(const assets::SceneSource& source, const RegionBake& bake,
     if (!regions) return fail(regions.error().code, kNoItem, "--regions: " + regions.error().message);
     RegionWriter writer(*regions, bake, region_key(source, bake.grid.columns, bake.grid.rows, options, executor),
                         executor);
-    if (auto loaded = writer.load(); !loaded) return tl::unexpected(loaded.error());
+    if (auto loaded = writer.load(); !loaded) return loaded.error();
     const bool is_shard = bake.shard.count > 1;
     // Regions of two bakes never have an index.
     if (!is_shard) std::filesystem::remove(bake.folder + "/" + bake::kRegionIndexName, failed);
@@ -215,15 +215,15 @@ Result<int> write_all(const assets::SceneSource& source, const RegionBake& bake,
     // Also after an error: what is done need not be done again.
     auto saved = writer.flush();
     if (saved) saved = writer.save();
-    if (!written) return tl::unexpected(written.error());
-    if (!saved) return tl::unexpected(saved.error());
+    if (!written) return written.error();
+    if (!saved) return saved.error();
     if (baked < places.size()) {
         std::fprintf(stderr, "crofton: interrupted after %zu of %zu regions: the next run continues from here\n",
                      baked.load(), places.size());
         return kInterrupted;
     }
     if (!is_shard)
-        if (auto indexed = writer.write_index(); !indexed) return tl::unexpected(indexed.error());
+        if (auto indexed = writer.write_index(); !indexed) return indexed.error();
     return show_written(bake, writer, baked, regions->size(), watch);
 }
 
@@ -245,7 +245,7 @@ int check_regions(const std::string& folder, std::uint64_t largest_file, const s
     const auto opened = for_each_region(index->size(), executor, [&](std::size_t i) -> Result<void> {
         const Stopwatch one;
         auto region = bake::open_region(folder, (*index)[i], {}, access);
-        if (!region) return tl::unexpected(region.error());
+        if (!region) return region.error();
         regions[i] = std::move(*region);
         milliseconds[i] = one.milliseconds();
         return {};

@@ -85,7 +85,7 @@ Result<MeshBounds> bounds_of(const std::string& file, const BoundsRequest& run) 
     MeshBounds result;
     result.file = file;
     const auto mesh = load_mesh(file, run.read);
-    if (!mesh) return tl::unexpected(mesh.error());
+    if (!mesh) return mesh.error();
     result.triangles = mesh->triangle_count();
     const std::vector<glm::dvec3> points(mesh->positions.begin(), mesh->positions.end());
     const auto hull = measure::intrinsic_volumes_of_hull(points);
@@ -117,9 +117,9 @@ Result<MeshBounds> bounds_of(const std::string& file, const BoundsRequest& run) 
     add("oriented box", box->value, box->lower_bound, [&](const Frustum& v) { return cull::classify(v, box->box); });
     const auto add_k_dop = [&](std::string kind, std::span<const glm::dvec3> directions) -> Result<void> {
         const auto dop = study::best_k_dop(points, directions, run.criterion);
-        if (!dop) return tl::unexpected(dop.error());
+        if (!dop) return dop.error();
         const auto body = study::hull_around(dop->bound, points);
-        if (!body) return tl::unexpected(body.error());
+        if (!body) return body.error();
         add(std::move(kind), dop->value, dop->lower_bound, [&](const Frustum& v) { return cull::classify(v, *body); });
         return {};
     };
@@ -183,9 +183,9 @@ Result<std::vector<glm::dvec3>> parse_directions(const std::string& text) {
 // their cost. Beside it stands the share that the criterion predicts.
 Result<int> run_bounds(BoundsRequest& run) {
     const auto criterion = parse_criterion(run.criterion_name, run.read);
-    if (!criterion) return tl::unexpected(criterion.error());
+    if (!criterion) return criterion.error();
     auto directions = parse_directions(run.directions_text);
-    if (!directions) return tl::unexpected(directions.error());
+    if (!directions) return directions.error();
     run.criterion = *criterion;
     run.directions = std::move(*directions);
     Json list = Json::array();
@@ -198,7 +198,7 @@ Result<int> run_bounds(BoundsRequest& run) {
             "triangles", "bound", "value", "over hull", "gap <=", "N_p", "C_v ns", "cost ns");
     for (const std::string& file : run.files) {
         const auto mesh = bounds_of(file, run);
-        if (!mesh) return tl::unexpected(mesh.error());
+        if (!mesh) return mesh.error();
         if (run.json_path != "-") print(*mesh, run.only_best);
         list.push_back(to_json(*mesh));
     }
@@ -206,7 +206,7 @@ Result<int> run_bounds(BoundsRequest& run) {
         if (const auto written =
                 write_json(run.json_path, {{"criterion", run.criterion_name}, {"meshes", std::move(list)}});
             !written)
-            return tl::unexpected(written.error());
+            return written.error();
     return kSuccess;
 }
 

@@ -70,7 +70,7 @@ Result<RigidTransform> pose_of(const std::string& argument) {
     std::string text = argument;
     if (std::error_code error; std::filesystem::is_regular_file(argument, error)) {
         auto contents = read_file(argument);
-        if (!contents) return tl::unexpected<Error>(contents.error());
+        if (!contents) return contents.error();
         text = *contents;
     }
     const auto bad = [&](std::uint64_t item, const char* why) {
@@ -102,7 +102,7 @@ Result<RigidTransform> pose_of(const std::string& argument) {
 
 Result<mesh::MeshTree> tree_of(const std::string& path, const ReadOptions& options, double& milliseconds) {
     const auto mesh = load_mesh(path, options);
-    if (!mesh) return tl::unexpected<Error>(mesh.error());
+    if (!mesh) return mesh.error();
     const auto start = Clock::now();
     auto tree = mesh::MeshTree::build(*mesh);
     milliseconds += milliseconds_since(start);

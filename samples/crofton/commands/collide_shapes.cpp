@@ -32,7 +32,7 @@ Result<FileShape> load_shape(const std::string& path, bool as_hull, int max_vert
     const auto named = [&](const Error& e) { return fail(e.code, e.item, path + ": " + e.message); };
     if (as_hull) {
         const auto points = load_points(path, options);
-        if (!points) return tl::unexpected<Error>(points.error());
+        if (!points) return points.error();
         const std::vector<glm::vec3> floats(points->begin(), points->end());
         auto hull = convex::Hull::build(floats, {.max_vertices = max_vertices});
         if (!hull) return named(hull.error());
@@ -40,7 +40,7 @@ Result<FileShape> load_shape(const std::string& path, bool as_hull, int max_vert
         return made;
     }
     const auto mesh = load_mesh(path, options);
-    if (!mesh) return tl::unexpected<Error>(mesh.error());
+    if (!mesh) return mesh.error();
     auto tree = mesh::MeshTree::build(*mesh);
     if (!tree) return named(tree.error());
     made.mesh = std::move(*tree);
@@ -96,7 +96,7 @@ ShapeAnswer ask_hulls(const std::string& mode, const convex::ShapeAtPose& a, con
 Result<ShapeAnswer> ask_cast(const convex::ShapeAtPose& a, const convex::ShapeAtPose& b, const convex::Motion& motion,
                              double duration) {
     const auto impact = convex::cast(a, {}, b, motion, {.duration = duration});
-    if (!impact) return tl::unexpected<Error>(impact.error());
+    if (!impact) return impact.error();
     constexpr const char* kNames[] = {"miss", "hit", "unresolved"};
     ShapeAnswer answer;
     answer.document = {{"hit", impact->result == convex::CastResult::hit},

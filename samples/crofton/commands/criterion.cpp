@@ -11,7 +11,7 @@
 namespace crofton::cli {
 namespace {
 
-tl::unexpected<Error> bad(const std::string& text, const std::string& why) {
+Error bad(const std::string& text, const std::string& why) {
     return fail(ErrorCode::invalid_argument, kNoItem, "--criterion " + text + ": " + why);
 }
 
@@ -36,14 +36,15 @@ std::vector<double> numbers(const std::string& text, std::size_t count) {
 
 Result<measure::Criterion> partner(const std::string& path, const ReadOptions& options) {
     const auto points = load_points(path, options);
-    if (!points) return tl::unexpected(points.error());
+    if (!points) return points.error();
     const std::span<const glm::dvec3> span(*points);
     const auto hull = convex_hull(span);
     if (!hull) return fail(hull.error().code, hull.error().item, path + ": " + hull.error().message);
-    if (hull->rank == 3)
-        return measure::intrinsic_volumes_of_polytope(span, hull->triangles).map([](const auto& body) {
-            return measure::for_partner(body);
-        });
+    if (hull->rank == 3) {
+        const auto body = measure::intrinsic_volumes_of_polytope(span, hull->triangles);
+        if (!body) return body.error();
+        return measure::for_partner(*body);
+    }
     if (hull->rank == 2) {
         glm::dvec3 twice_area(0.0);
         double perimeter = 0.0;

@@ -40,7 +40,7 @@ Result<FittedBox> fit_box(std::span<const glm::dvec3> points, const measure::Cri
         const FunctionRef<bool(const fit::Progress&)> asked(tell);
         options.should_stop = &asked;
         const auto exact = fit::fit_exact(points, options);
-        if (!exact) return tl::unexpected(exact.error());
+        if (!exact) return exact.error();
         fitted.box = exact->box;
         fitted.value = exact->value;
         fitted.lower_bound = exact->lower_bound;
@@ -49,7 +49,7 @@ Result<FittedBox> fit_box(std::span<const glm::dvec3> points, const measure::Cri
     } else {
         const auto quality = request.quality == "fast" ? fit::Quality::fast : fit::Quality::tight;
         const auto box = fit::fit_obb(points, {criterion, quality});
-        if (!box) return tl::unexpected(box.error());
+        if (!box) return box.error();
         fitted.box = *box;
         fitted.value = criterion(measure::intrinsic_volumes_of_box(*box));
     }
@@ -61,7 +61,7 @@ Result<FittedMesh> fit_mesh(const std::string& file, const measure::Criterion& c
     FittedMesh mesh;
     mesh.file = file;
     const auto points = load_points(file, request.read);
-    if (!points) return tl::unexpected(points.error());
+    if (!points) return points.error();
     const std::span<const glm::dvec3> span(*points);
     const auto named = [&](const Error& error) { return fail(error.code, error.item, file + ": " + error.message); };
     const Stopwatch watch;
@@ -75,10 +75,9 @@ Result<FittedMesh> fit_mesh(const std::string& file, const measure::Criterion& c
         mesh.outline.insert(mesh.outline.end(),
                             {span[hull->vertices[i]], span[hull->vertices[(i + 1) % hull->vertices.size()]]});
     const auto fit_by = [&](const std::string& name, const measure::Criterion& by) {
-        return fit_box(span, by, request).map([&](FittedBox fitted) {
-            fitted.criterion = name;
-            return fitted;
-        });
+        auto fitted = fit_box(span, by, request);
+        if (fitted) fitted->criterion = name;
+        return fitted;
     };
     auto chosen = fit_by(request.criterion, criterion);
     if (!chosen) return named(chosen.error());
@@ -109,7 +108,7 @@ int run_fit(const FitRequest& request) {
         for (const std::string& file : request.files) {
             auto mesh = fit_mesh(file, *criterion, request);
             if (!mesh) return report_error("", mesh.error());
-            // Of several files, the one in which the search was interrupted has only some of its boxes.
+            // Leaves out the file in which the search was interrupted: it has only some of its boxes.
             if (interrupted() && request.files.size() > 1) break;
             meshes.push_back(std::move(*mesh));
             bar.set(meshes.size());

@@ -136,9 +136,9 @@ Result<PlanarFit> fit_polygon(const NamedPolygon& named) {
     const auto ring = named.polygon.ring(0);
     result.ring.assign(ring.begin(), ring.end());
     // Coordinates that are too large, or no numbers, are refused here.
-    if (const auto checked = fit::minimal_disc(ring); !checked) return tl::unexpected(checked.error());
+    if (const auto checked = fit::minimal_disc(ring); !checked) return checked.error();
     const auto hull = measure::convex_hull(ring);
-    if (!hull) return tl::unexpected(hull.error());
+    if (!hull) return hull.error();
     result.hull.assign(hull->begin(), hull->end());
     const auto own = measure::planar_measures_of_convex_polygon(*hull);
     result.hull_area = own.area;
@@ -223,7 +223,7 @@ Result<int> run_fit_planar(const PlanarFitRun& run) {
             return fail(ErrorCode::unsupported, kNoItem,
                         path + ": --planar takes polygons: .poly, .json, .geojson, .wad");
         const auto file = read_polygons(path, "", run.read.limits);
-        if (!file) return tl::unexpected(file.error());
+        if (!file) return file.error();
         for (const std::string& warning : file->warnings)
             std::fprintf(stderr, "crofton: warning: %s\n", warning.c_str());
         for (const NamedPolygon& named : file->polygons) {
@@ -241,11 +241,10 @@ Result<int> run_fit_planar(const PlanarFitRun& run) {
         Json list = Json::array();
         for (const PlanarFit& fitted : fits) list.push_back(to_json(fitted));
         if (auto written = write_json(run.json_path, {{"polygons", std::move(list)}, {"refused", refused}}); !written)
-            return tl::unexpected(written.error());
+            return written.error();
     }
     if (!run.svg_path.empty())
-        if (auto written = write_file(run.svg_path, planar_fits_svg(fits, run.drawn)); !written)
-            return tl::unexpected(written.error());
+        if (auto written = write_file(run.svg_path, planar_fits_svg(fits, run.drawn)); !written) return written.error();
     if (run.json_path != "-" && run.svg_path != "-") print(fits, refused);
     return refused > 0 ? kBadInput : kSuccess;
 }

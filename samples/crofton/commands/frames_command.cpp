@@ -73,7 +73,7 @@ class FramesRun {
     }
 
     Result<int> run() {
-        if (auto prepared = prepare(); !prepared) return tl::unexpected(prepared.error());
+        if (auto prepared = prepare(); !prepared) return prepared.error();
         catch_interrupts();  // before, there is nothing to keep
         std::optional<pipeline::Verification> verification;
         if (options_.verify) verification.emplace();
@@ -88,9 +88,9 @@ class FramesRun {
                 if (!frame)
                     return fail(frame.error().code, frame.error().item,
                                 "frame " + std::to_string(index) + ": " + frame.error().message);
-                if (auto saved = save_picture(index); !saved) return tl::unexpected(saved.error());
+                if (auto saved = save_picture(index); !saved) return saved.error();
                 if (verification)
-                    if (auto done = verify(*frame, *verification); !done) return tl::unexpected(done.error());
+                    if (auto done = verify(*frame, *verification); !done) return done.error();
                 if (!options_.output.ids) forget_ids(*frame);
                 stream.add(*frame);
                 frames.push_back(std::move(*frame));
@@ -100,12 +100,12 @@ class FramesRun {
         finish_what_there_is();
         if (frames.empty()) return fail(ErrorCode::cancelled, kNoItem, "interrupted before the first frame");
         if (auto written = write_results(options_.output, facts, frames, verification); !written)
-            return tl::unexpected(written.error());
+            return written.error();
         if (regions_ && options_.output.json != "-" && options_.output.csv != "-")
             std::printf("the first frame was found %.0f ms after the start\n", first_frame_ms_);
-        if (auto written = write_report(facts, frames, verification); !written) return tl::unexpected(written.error());
+        if (auto written = write_report(facts, frames, verification); !written) return written.error();
         if (trace_)
-            if (auto written = trace_->write(options_.trace); !written) return tl::unexpected(written.error());
+            if (auto written = trace_->write(options_.trace); !written) return written.error();
         if (verification)
             for (const std::string& message : verification->messages)
                 std::fprintf(stderr, "crofton: mismatch: %s\n", message.c_str());
@@ -120,13 +120,13 @@ class FramesRun {
   private:
     Result<void> prepare() {
         const auto size = image_size_from(options_.size);
-        if (!size) return tl::unexpected(size.error());
+        if (!size) return size.error();
         const auto bounds = pipeline::bounds_kind_from(options_.bounds);
-        if (!bounds) return tl::unexpected(bounds.error());
+        if (!bounds) return bounds.error();
         const auto mode = pipeline::cull_mode_from(options_.cull);
-        if (!mode) return tl::unexpected(mode.error());
+        if (!mode) return mode.error();
         const auto tree = pipeline::orientation_from(options_.tree);
-        if (!tree) return tl::unexpected(tree.error());
+        if (!tree) return tree.error();
         const double aspect = static_cast<double>(size->width) / size->height;
         if (options_.frames == 0u) return fail(ErrorCode::invalid_argument, kNoItem, "--frames must be at least 1");
         if (!options_.output.png.empty())
@@ -142,12 +142,12 @@ class FramesRun {
         typical.aspect = aspect;
         typical.far_distance = 200.0;
         const auto criterion = pipeline::criterion_for(*bounds, typical);
-        if (!criterion) return tl::unexpected(criterion.error());
+        if (!criterion) return criterion.error();
         auto source = load_updated_scene(
             options_.scene, options_.read,
             {.criterion = *criterion, .map = options_.map, .seed = options_.seed, .instances = options_.instances},
             executor());
-        if (!source) return tl::unexpected(source.error());
+        if (!source) return source.error();
         source_.emplace(std::move(*source));
         focus_ = pipeline::focus_of(source_->scene);
         pipeline::Street street;
@@ -157,7 +157,7 @@ class FramesRun {
                                            options_.read.limits};
         street.set(path_options);
         auto path = pipeline::make_camera_path(path_options, focus_, street.walk);
-        if (!path) return tl::unexpected(path.error());
+        if (!path) return path.error();
         path_ = std::move(*path);
         pipeline_options_ = {*bounds, *mode, true};
         pipeline_options_.one_sided = source_->one_sided;
@@ -166,10 +166,10 @@ class FramesRun {
         pipeline_options_.tree = *tree;
         if (trace_) pipeline_options_.trace = trace_->hooks();
         const auto occluders = baked_occluders();
-        if (!occluders) return tl::unexpected(occluders.error());
+        if (!occluders) return occluders.error();
         auto frames =
             pipeline::Pipeline::create(source_->scene, source_->movers, pipeline_options_, executor(), *occluders);
-        if (!frames) return tl::unexpected(frames.error());
+        if (!frames) return frames.error();
         pipeline_.emplace(std::move(*frames));
         return prepare_drawing(*size);
     }
@@ -200,12 +200,12 @@ class FramesRun {
         how.occlusion = pipeline_options_.occlusion;
         how.picture = pipeline_options_.picture;
         auto opened = pipeline::RegionPipeline::open(options_.scene, how);
-        if (!opened) return tl::unexpected(opened.error());
+        if (!opened) return opened.error();
         regions_.emplace(std::move(*opened));
         focus_ = regions_->stream().bounds();
         auto path = pipeline::make_camera_path(
             {options_.camera, options_.frames.value_or(0), options_.seed, aspect, options_.read.limits}, focus_, {});
-        if (!path) return tl::unexpected(path.error());
+        if (!path) return path.error();
         path_ = std::move(*path);
         make_list();
         return start_drawing(size, 0.0);
@@ -239,8 +239,8 @@ class FramesRun {
         const bool is_new = listed_ != regions_->mesh_revision();
         make_list();
         if (drawing_ && is_new)
-            if (auto set = drawing_->upload_geometry(); !set) return tl::unexpected(set.error());
-        if (auto drawn = draw_or_predict(*frame); !drawn) return tl::unexpected(drawn.error());
+            if (auto set = drawing_->upload_geometry(); !set) return set.error();
+        if (auto drawn = draw_or_predict(*frame); !drawn) return drawn.error();
         if (options_.real_time) std::this_thread::sleep_until(start + std::chrono::microseconds(16'667));
         return frame;
     }
@@ -268,7 +268,7 @@ class FramesRun {
         if (by_occluders()) {
             const auto buffer = image_size_from(options_.occlusion_size.empty() ? "400x225" : options_.occlusion_size,
                                                 "--occlusion-size", 8, 4096);
-            if (!buffer) return tl::unexpected(buffer.error());
+            if (!buffer) return buffer.error();
             pipeline_options_.occlusion = OcclusionOptions{.size = {buffer->width, buffer->height},
                                                            .max_occluders = options_.occluders.value_or(128)};
             return {};
@@ -287,8 +287,8 @@ class FramesRun {
         const auto parts =
             pipeline::load_baked_parts(is_own ? options_.scene : options_.baked, source_->scene, options_.read.limits);
         if (is_own && (!parts || !parts->occluders)) return none;  // baked without: they are found
-        if (!parts) return tl::unexpected(parts.error());
-        if (!parts->occluders && !parts->left_out.empty()) return tl::unexpected(parts->left_out.front());
+        if (!parts) return parts.error();
+        if (!parts->occluders && !parts->left_out.empty()) return parts->left_out.front();
         if (!parts->occluders)
             return fail(ErrorCode::empty, kNoItem, options_.baked + ": has no occluders: 'crofton bake' writes them");
         return parts->occluders;
@@ -309,7 +309,7 @@ class FramesRun {
             return {};
         }
         if (options_.draw || !options_.output.png.empty() || drawing.error().code != ErrorCode::unavailable)
-            return tl::unexpected(drawing.error());
+            return drawing.error();
         std::fprintf(stderr, "crofton: not drawing: %s\n", drawing.error().message.c_str());
         return {};
     }
@@ -327,7 +327,7 @@ class FramesRun {
         if (!frame) return frame;
         frame->index = index;
         frame->update_us += scene_us;
-        if (auto drawn = draw_or_predict(*frame); !drawn) return tl::unexpected(drawn.error());
+        if (auto drawn = draw_or_predict(*frame); !drawn) return drawn.error();
         return frame;
     }
 
@@ -357,9 +357,9 @@ class FramesRun {
             pipeline::verify_frame(source_->scene, *pipeline_, pipeline_options_, frame, exactly, verification);
         if (!frame.occlusion || !drawing_) return {};
         const auto owners = drawing_->find_owners(frame);
-        if (!owners) return tl::unexpected(owners.error());
+        if (!owners) return owners.error();
         const auto changed = drawing_->count_changed_pixels();
-        if (!changed) return tl::unexpected(changed.error());
+        if (!changed) return changed.error();
         if (regions_)
             pipeline::verify_occlusion(*regions_->drawables(), *owners, *changed, exactly, frame, verification);
         else
@@ -380,7 +380,7 @@ class FramesRun {
         const bool report = !options_.report.empty() && index % step == 0 && report_pictures_.size() < kReportPictures;
         if (!drawing_ || (options_.output.png.empty() && !report)) return {};
         const auto picture = drawing_->picture();
-        if (!picture) return tl::unexpected(picture.error());
+        if (!picture) return picture.error();
         if (report) report_pictures_.push_back({index, **picture});
         if (index == 0 && !options_.output.png.empty())
             if (auto removed = remove_old_pictures(options_.output.png); !removed) return removed;

@@ -18,17 +18,16 @@ constexpr std::uint32_t kShown = 0, kOwners = 1, kAll = 2;
 Result<std::unique_ptr<FramesDrawing>> FramesDrawing::create(pipeline::DrawList& list, const ImageSize& size,
                                                              double haze, bool occlusion) {
     auto device = render::Device::create();
-    if (!device) return tl::unexpected(device.error());
+    if (!device) return device.error();
     std::unique_ptr<FramesDrawing> drawing(new FramesDrawing(list, std::move(*device), haze));
     auto rasterizer = render::Rasterizer::create(drawing->device_, {.width = size.width, .height = size.height});
-    if (!rasterizer) return tl::unexpected(rasterizer.error());
+    if (!rasterizer) return rasterizer.error();
     for (const std::uint32_t picture : {kOwners, kAll}) {
         if (picture == kAll && !occlusion) continue;
-        if (auto made = rasterizer->resize(size.width, size.height, picture); !made)
-            return tl::unexpected(made.error());
+        if (auto made = rasterizer->resize(size.width, size.height, picture); !made) return made.error();
     }
     drawing->rasterizer_.emplace(std::move(*rasterizer));
-    if (auto set = drawing->upload_geometry(); !set) return tl::unexpected(set.error());
+    if (auto set = drawing->upload_geometry(); !set) return set.error();
     return drawing;
 }
 
@@ -49,7 +48,7 @@ Result<void> FramesDrawing::draw(Columns& columns, const Camera& camera, std::ui
     frame.ranges = list_.ranges();
     frame.environment.haze_distance = static_cast<float>(haze_);
     const auto counters = rasterizer_->draw(frame, picture);
-    if (!counters) return tl::unexpected(counters.error());
+    if (!counters) return counters.error();
     columns.gpu = *counters;
     columns.draw_us = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
     columns.triangles_clipped = list_.predict_clipped();
@@ -68,7 +67,7 @@ Result<void> FramesDrawing::draw(pipeline::FrameStatistics& frame) {
 }
 
 Result<const render::Image*> FramesDrawing::picture() {
-    if (auto read = rasterizer_->read_pixels(image_, kShown); !read) return tl::unexpected(read.error());
+    if (auto read = rasterizer_->read_pixels(image_, kShown); !read) return read.error();
     return &image_;
 }
 
@@ -85,14 +84,13 @@ Result<void> FramesDrawing::find_seen(pipeline::FrameStatistics& frame) {
 
 Result<pipeline::BothOwners> FramesDrawing::find_owners(const pipeline::FrameStatistics& frame) {
     list_.select(frame.visible_ids, frame.camera);
-    if (auto drawn = owners_of_all_.draw(*rasterizer_, kOwners, list_, frame.camera); !drawn)
-        return tl::unexpected(drawn.error());
+    if (auto drawn = owners_of_all_.draw(*rasterizer_, kOwners, list_, frame.camera); !drawn) return drawn.error();
     return pipeline::BothOwners{owners_of_all_.triangles(), owners_of_shown_.triangles()};
 }
 
 Result<std::uint64_t> FramesDrawing::count_changed_pixels() {
-    if (auto read = rasterizer_->read_pixels(image_, kShown); !read) return tl::unexpected(read.error());
-    if (auto read = rasterizer_->read_pixels(other_image_, kAll); !read) return tl::unexpected(read.error());
+    if (auto read = rasterizer_->read_pixels(image_, kShown); !read) return read.error();
+    if (auto read = rasterizer_->read_pixels(other_image_, kAll); !read) return read.error();
     std::uint64_t changed = 0;
     for (std::size_t p = 0; p < image_.rgba.size(); p += 4)
         changed += std::memcmp(&image_.rgba[p], &other_image_.rgba[p], 4) != 0;

@@ -45,7 +45,7 @@ Result<std::vector<Object>> objects_of(const HierarchyOptions& options) {
     if (!is_polygon_file(options.file))
         return fail(ErrorCode::unsupported, kNoItem, options.file + ": takes polygons: .poly, .json, .geojson, .wad");
     const auto file = read_polygons(options.file, "");
-    if (!file) return tl::unexpected(file.error());
+    if (!file) return file.error();
     std::vector<Object> objects;
     for (const NamedPolygon& named : file->polygons) {
         if (objects.size() == 4) break;
@@ -64,9 +64,9 @@ Result<Chain> chain_of(const Object& object, Kind kind, std::uint64_t levels) {
     Chain chain;
     chain.object = object.points;
     const auto first = fit::minimal_disc(object.points);
-    if (!first) return tl::unexpected(first.error());
+    if (!first) return first.error();
     const auto hull = measure::convex_hull(object.points);
-    if (!hull) return tl::unexpected(hull.error());
+    if (!hull) return hull.error();
     chain.own = PlanarSupport::of_convex_polygon(*hull).integral();
     chain.levels.push_back({*first, std::nullopt, PlanarSupport(*first).integral(), 0.0});
     std::vector<PlanarSupport> figures = {PlanarSupport(*first)};
@@ -74,13 +74,13 @@ Result<Chain> chain_of(const Object& object, Kind kind, std::uint64_t levels) {
         const PlanarSupport ancestors = study::lower_envelope(figures);
         if (kind == Kind::circles) {
             const auto best = study::optimal_disc(object.points, ancestors);
-            if (!best) return tl::unexpected(best.error());
+            if (!best) return best.error();
             chain.levels.push_back({best->bound, std::nullopt, best->measure, best->measure - best->lower_bound});
             figures.emplace_back(best->bound);
         } else {
             const auto best = kind == Kind::rectangles ? study::optimal_rectangle(object.points, ancestors)
                                                        : study::optimal_box(object.points, ancestors);
-            if (!best) return tl::unexpected(best.error());
+            if (!best) return best.error();
             chain.levels.push_back({std::nullopt, best->bound, best->measure, best->measure - best->lower_bound});
             figures.emplace_back(best->bound);
         }
@@ -134,7 +134,7 @@ std::vector<VerifyRow> trials(const Chain& chain, const std::string& name, const
 
 Result<int> run_hierarchy(const HierarchyOptions& options) {
     const auto objects = objects_of(options);
-    if (!objects) return tl::unexpected(objects.error());
+    if (!objects) return objects.error();
     std::vector<VerifyRow> rows;
     std::vector<Chain> chains;
     Json list = Json::array();
@@ -172,10 +172,9 @@ Result<int> run_hierarchy(const HierarchyOptions& options) {
     if (!options.json.empty())
         if (const auto written = write_json(options.json, {{"chains", std::move(list)}, {"rows", json_of(rows)}});
             !written)
-            return tl::unexpected(written.error());
+            return written.error();
     if (!options.svg.empty())
-        if (const auto written = write_file(options.svg, hierarchy_svg(chains)); !written)
-            return tl::unexpected(written.error());
+        if (const auto written = write_file(options.svg, hierarchy_svg(chains)); !written) return written.error();
     return std::all_of(rows.begin(), rows.end(), [](const VerifyRow& row) { return row.holds; }) ? kSuccess
                                                                                                  : kCheckFailed;
 }

@@ -98,19 +98,19 @@ Json compare(const char* method, sampling::Sequence sequence, double surface, co
 
 Result<void> run_lines(const LinesOptions& options) {
     const auto source = load_updated_scene(options.scene, options.read, {.map = options.map, .seed = options.seed});
-    if (!source) return tl::unexpected(source.error());
+    if (!source) return source.error();
     const auto flat = assets::flat_scene(*source, options.read.limits);
-    if (!flat) return tl::unexpected(flat.error());
+    if (!flat) return flat.error();
     const TriangleMesh& mesh = flat->mesh;
     const Vector<radiosity::Material> materials(mesh.triangle_count());
     const auto patches = radiosity::make_patches(mesh, materials);
-    if (!patches) return tl::unexpected(patches.error());
+    if (!patches) return patches.error();
     const auto tracer = lines::LineTracer::build(mesh);
-    if (!tracer) return tl::unexpected(tracer.error());
+    if (!tracer) return tracer.error();
     double surface = 0.0;
     for (const double area : patches->areas) surface += area;
     const auto bundles = lines::BundleTracer::build(mesh);
-    if (!bundles) return tl::unexpected(bundles.error());
+    if (!bundles) return bundles.error();
     const double box_area = lines::LineSource(tracer->bounds(), LineMethod::walls, 1).surface_area();
     const double cell_area = surface / static_cast<double>(mesh.triangle_count());
     Json rows = Json::array();

@@ -22,13 +22,13 @@ Result<int> run_pairs(const FactorsRun& run) {
     std::vector<VerifyRow> rows;
     for (const StandardPair& pair : standard_pairs()) {
         const auto found = factor_by_global_lines(pair, run.blocks, run.seed);
-        if (!found) return tl::unexpected(found.error());
+        if (!found) return found.error();
         rows.push_back(measured_row(pair.name, pair.source, pair.factor, found->value, found->standard_error));
         rows.back().cases = found->rays;
     }
     if (run.json != "-") std::fputs(table_of(rows).c_str(), stdout);
     if (!run.json.empty())
-        if (const auto written = write_json(run.json, json_of(rows)); !written) return tl::unexpected(written.error());
+        if (const auto written = write_json(run.json, json_of(rows)); !written) return written.error();
     return std::all_of(rows.begin(), rows.end(), [](const VerifyRow& row) { return row.holds; }) ? kSuccess
                                                                                                  : kCheckFailed;
 }
@@ -57,21 +57,21 @@ Result<SceneComplexity> look_at(const std::string& scene, const FactorsRun& run)
     load.seed = run.seed;
     if (scene.ends_with(".wad")) load.map = run.map;
     const auto source = load_updated_scene(scene, run.read, load);
-    if (!source) return tl::unexpected(source.error());
+    if (!source) return source.error();
     const auto flat = assets::flat_scene(*source, run.read.limits);
-    if (!flat) return tl::unexpected(flat.error());
+    if (!flat) return flat.error();
     const TriangleMesh& mesh = flat->mesh;
     const auto tracer = lines::LineTracer::build(mesh);
-    if (!tracer) return tl::unexpected(tracer.error());
+    if (!tracer) return tracer.error();
     const Vector<std::uint32_t> numbers = patch_numbers(mesh, tracer->bounds(), run.patches);
     const Vector<radiosity::Material> materials(std::size_t{*std::max_element(numbers.begin(), numbers.end())} + 1);
     const auto patches = radiosity::make_patches(mesh, numbers, materials);
-    if (!patches) return tl::unexpected(patches.error());
+    if (!patches) return patches.error();
     const lines::LineSource lines(tracer->bounds(), lines::LineMethod::walls, run.seed);
     const auto matrix = radiosity::factors_by_global_lines(*tracer, *patches, lines, run.blocks);
-    if (!matrix) return tl::unexpected(matrix.error());
+    if (!matrix) return matrix.error();
     const auto information = study::mutual_information(*matrix);
-    if (!information) return tl::unexpected(information.error());
+    if (!information) return information.error();
     SceneComplexity result{source->name, mesh.triangle_count(), patches->count(), 0.0, 0.0, *information};
     double surface = 0.0, rays = 0.0, escaped = 0.0;
     for (const double area : patches->areas) surface += area;
@@ -94,7 +94,7 @@ Result<int> run_factors(const FactorsRun& run) {
                     "bits", "of at most", "bias");
     for (const std::string& scene : run.scenes) {
         const auto seen = look_at(scene, run);
-        if (!seen) return tl::unexpected(seen.error());
+        if (!seen) return seen.error();
         const auto& i = seen->information;
         if (run.json != "-")
             std::printf("%-24s %10zu %8zu %10.3f %8.1f%% %10.3f %10.3f %10.3f\n", seen->name.c_str(), seen->triangles,
@@ -110,7 +110,7 @@ Result<int> run_factors(const FactorsRun& run) {
                         {"rays", i.rays}});
     }
     if (!run.json.empty())
-        if (const auto written = write_json(run.json, rows); !written) return tl::unexpected(written.error());
+        if (const auto written = write_json(run.json, rows); !written) return written.error();
     return kSuccess;
 }
 

@@ -111,14 +111,14 @@ void hull_rows(std::span<const glm::dvec3> points, const ConvexHull& hull, const
 
 Result<void> run_measure(const MeasureOptions& options) {
     const auto mesh = load_mesh(options.file, options.read);
-    if (!mesh) return tl::unexpected(mesh.error());
+    if (!mesh) return mesh.error();
     const std::vector<glm::dvec3> points(mesh->positions.begin(), mesh->positions.end());
     const auto hull = convex_hull(points);
-    if (!hull) return tl::unexpected(hull.error());
+    if (!hull) return hull.error();
     const auto exact = measure::intrinsic_volumes_of_hull(points);
-    if (!exact) return tl::unexpected(exact.error());
+    if (!exact) return exact.error();
     const auto tracer = lines::LineTracer::build(*mesh);
-    if (!tracer) return tl::unexpected(tracer.error());
+    if (!tracer) return tracer.error();
     if (hull->rank < 2)
         return fail(ErrorCode::empty, kNoItem, options.file + ": all vertices lie on one line, which no line hits");
 

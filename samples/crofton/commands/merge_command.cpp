@@ -31,14 +31,14 @@ Result<int> run_merge(const MergeRequest& options) {
     std::vector<std::span<const std::byte>> states;
     for (const std::string& path : options.parts) {
         auto file = bake::MappedFile::open(path, {.access = bake::FileAccess::read});
-        if (!file) return tl::unexpected(file.error());
+        if (!file) return file.error();
         files.push_back(std::move(*file));
         states.push_back(files.back().bytes());
     }
     const std::uint32_t shards = options.shards ? options.shards : static_cast<std::uint32_t>(options.parts.size());
     if (is_region_state(states.front())) {
         const auto missing = merge_region_states(options.parts, states, options.out, shards, serial_executor());
-        if (!missing) return tl::unexpected(missing.error());
+        if (!missing) return missing.error();
         if (missing->empty()) return kSuccess;
         print_missing(options, "regions", *missing, shards);
         return kCheckFailed;
@@ -55,9 +55,9 @@ Result<int> run_merge(const MergeRequest& options) {
                     (names_part ? options.parts[sum.error().item] + ": " : std::string()) + sum.error().message);
     }
     if (auto written = write_file(options.out, {reinterpret_cast<const char*>(sum->data()), sum->size()}); !written)
-        return tl::unexpected(written.error());
+        return written.error();
     const auto missing = of_light ? radiosity::missing_shards(*sum, shards) : pvs::missing_shards(*sum, shards);
-    if (!missing) return tl::unexpected(missing.error());
+    if (!missing) return missing.error();
     if (missing->empty()) return kSuccess;
     print_missing(options, of_light ? "runs" : "lines", *missing, shards);
     return kCheckFailed;

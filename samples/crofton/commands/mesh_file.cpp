@@ -17,10 +17,9 @@ namespace {
 template <class Visit>
 Result<void> for_each_instance(const std::string& path, const ReadOptions& options, Visit visit) {
     const auto source = load_updated_scene(path, options);
-    if (!source) return tl::unexpected<Error>(source.error());
+    if (!source) return source.error();
     if (assets::instanced_triangles(source->scene) > options.limits.triangles)
-        return assets::in_file(path, "its instances have",
-                               assets::over_limit("triangles", options.limits.triangles).value());
+        return assets::in_file(path, "its instances have", assets::over_limit("triangles", options.limits.triangles));
     for (scene::InstanceId i = 0; i < source->scene.instance_count(); ++i)
         visit(source->scene.mesh(source->scene.mesh_of(i)), source->scene.world(source->scene.node_of(i)));
     return {};
@@ -33,9 +32,8 @@ Result<TriangleMesh> with_triangles(TriangleMesh mesh, const std::string& path, 
 
 Result<TriangleMesh> load_obj_mesh(const std::string& path, const ReadOptions& options) {
     const auto file = assets::read_obj(path, {.limits = options.limits});
-    if (!file) return tl::unexpected<Error>(file.error());
-    if (auto whole = refuse_if_strict(path, file->odd_faces, options); !whole)
-        return tl::unexpected<Error>(whole.error());
+    if (!file) return file.error();
+    if (auto whole = refuse_if_strict(path, file->odd_faces, options); !whole) return whole.error();
     print_warnings(file->odd_faces);
     TriangleMesh mesh;
     mesh.positions.assign(file->positions.begin(), file->positions.end());
@@ -58,7 +56,7 @@ Result<TriangleMesh> load_mesh(const std::string& path, const ReadOptions& optio
         if (glm::dot(world.linear[0], glm::cross(world.linear[1], world.linear[2])) >= 0.0) return;
         for (std::size_t i = first; i < all.indices.size(); i += 3) std::swap(all.indices[i + 1], all.indices[i + 2]);
     });
-    if (!loaded) return tl::unexpected<Error>(loaded.error());
+    if (!loaded) return loaded.error();
     return with_triangles(std::move(all), path);
 }
 
@@ -66,7 +64,7 @@ Result<std::vector<glm::dvec3>> load_points(const std::string& path, const ReadO
     std::vector<glm::dvec3> points;
     if (assets::extension(path) == "obj") {
         auto file = assets::read_obj(path, {.largest = std::numeric_limits<double>::max(), .limits = options.limits});
-        if (!file) return tl::unexpected<Error>(file.error());
+        if (!file) return file.error();
         points = std::move(file->positions);
     } else if (const auto loaded = for_each_instance(path, options,
                                                      [&](const TriangleMesh& mesh, const Transform& world) {
@@ -74,7 +72,7 @@ Result<std::vector<glm::dvec3>> load_points(const std::string& path, const ReadO
                                                              points.push_back(world * glm::dvec3(p));
                                                      });
                !loaded)
-        return tl::unexpected<Error>(loaded.error());
+        return loaded.error();
     if (points.empty()) return fail(ErrorCode::empty, kNoItem, path + ": no vertices");
     return points;
 }

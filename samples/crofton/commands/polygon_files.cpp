@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-tl::unexpected<Error> damaged(const std::string& path, const std::string& what) {
+Error damaged(const std::string& path, const std::string& what) {
     return fail(ErrorCode::parse, kNoItem, path + ": " + what);
 }
 
@@ -42,7 +42,7 @@ class PolyReader {
                     if (!number(p.x) || !number(p.y))
                         return damaged(path_, where("expected a coordinate of " + named.name));
                     if (++points_ > limits_.triangles)
-                        return assets::in_file(path_, "", assets::over_limit("triangles", limits_.triangles).value());
+                        return assets::in_file(path_, "", assets::over_limit("triangles", limits_.triangles));
                     named.polygon.points.push_back(p);
                 }
                 named.polygon.ring_ends.push_back(static_cast<std::uint32_t>(named.polygon.points.size()));
@@ -132,7 +132,7 @@ class GeoJsonReader {
     }
 
   private:
-    [[nodiscard]] tl::unexpected<Error> broken(const std::string& name, const std::string& what) const {
+    [[nodiscard]] Error broken(const std::string& name, const std::string& what) const {
         return damaged(path_, (name.empty() ? "" : name + ": ") + what);
     }
 
@@ -186,14 +186,13 @@ Result<PolygonFile> read_json(const std::string& path, const std::string& text, 
         file.polygons.push_back(std::move(named));
     } else if (document.is_object()) {
         file.one_plane = true;
-        if (auto read = GeoJsonReader(path, file).read(document); !read) return tl::unexpected(read.error());
+        if (auto read = GeoJsonReader(path, file).read(document); !read) return read.error();
     } else {
         return damaged(path, "neither rings nor GeoJSON");
     }
     std::uint64_t points = 0;
     for (const NamedPolygon& named : file.polygons) points += named.polygon.points.size();
-    if (points > limits.triangles)
-        return assets::in_file(path, "", assets::over_limit("triangles", limits.triangles).value());
+    if (points > limits.triangles) return assets::in_file(path, "", assets::over_limit("triangles", limits.triangles));
     return file;
 }
 
@@ -224,7 +223,7 @@ Result<PolygonFile> read_wad(const std::string& path, const std::string& text, c
             }
         }
         if (points > limits.triangles)
-            return assets::in_file(path, "", assets::over_limit("triangles", limits.triangles).value());
+            return assets::in_file(path, "", assets::over_limit("triangles", limits.triangles));
     }
     return file;
 }
@@ -238,7 +237,7 @@ bool is_polygon_file(const std::string& path) {
 
 Result<PolygonFile> read_polygons(const std::string& path, const std::string& map, const assets::ReadLimits& limits) {
     const auto text = read_file(path, limits.bytes);
-    if (!text) return tl::unexpected(text.error());
+    if (!text) return text.error();
     const std::string extension = assets::extension(path);
     auto file = extension == "poly"  ? PolyReader(path, *text, limits).read()
                 : extension == "wad" ? read_wad(path, *text, map, limits)

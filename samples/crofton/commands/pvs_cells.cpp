@@ -31,7 +31,7 @@ bool take(const char*& text, char c) {
 
 Result<pvs::Cells> cells_of_file(const std::string& path, const assets::ReadLimits& limits) {
     const auto text = assets::read_file(path, limits.bytes);
-    if (!text) return tl::unexpected(text.error());
+    if (!text) return text.error();
     std::istringstream lines(*text);
     std::vector<Aabb> boxes;
     std::vector<pvs::ConvexCell> convex;

@@ -60,30 +60,30 @@ struct Job {
 
 Result<Job> make_job(const PvsRequest& options, Executor& executor) {
     const auto shard = shard_from(options.shard);
-    if (!shard) return tl::unexpected(shard.error());
+    if (!shard) return shard.error();
     if (!options.shard.empty() && options.state.empty())
         return fail(ErrorCode::invalid_argument, kNoItem, "--shard needs --state: the part to write");
     auto source =
         load_updated_scene(options.scene, options.read,
                            {.map = options.map, .seed = options.seed, .instances = options.instances}, executor);
-    if (!source) return tl::unexpected(source.error());
+    if (!source) return source.error();
     Aabb eyes = pipeline::eyes_of(source->scene, options.height);
     if (!options.eyes.empty()) {
         double x[6];
-        if (auto read = read_numbers("--eyes", options.eyes, x); !read) return tl::unexpected(read.error());
+        if (auto read = read_numbers("--eyes", options.eyes, x); !read) return read.error();
         eyes = {{x[0], x[1], x[2]}, {x[3], x[4], x[5]}};
     }
     auto cells = cells_from(options.cells.empty() ? "64x2x64" : options.cells, eyes, *source,
                             {.inset = kInset * options.near_radius, .size = options.cell_size}, options.read.limits);
-    if (!cells) return tl::unexpected(cells.error());
+    if (!cells) return cells.error();
     auto scene =
         pipeline::make_pvs_scene(*source, !options.out.empty() || !options.svg.empty() || options.views > 0, executor);
-    if (!scene) return tl::unexpected(scene.error());
+    if (!scene) return scene.error();
     // Before the lines: once they are interrupted, little is left to do.
     Vector<std::byte> scene_file;
     if (options.with_scene) {
         auto baked = assets::bake_source(*source, executor);
-        if (!baked) return tl::unexpected(baked.error());
+        if (!baked) return baked.error();
         scene_file = std::move(*baked);
     }
     return Job{options, std::move(*source), std::move(*scene), std::move(*cells), *shard, std::move(scene_file)};
@@ -111,7 +111,7 @@ struct PartProgress {
 Result<void> save(const std::string& path, const pvs::Bake& bake) {
     if (path.empty()) return {};
     const auto bytes = bake.state();
-    if (!bytes) return tl::unexpected(bytes.error());
+    if (!bytes) return bytes.error();
     return write_file(path, {reinterpret_cast<const char*>(bytes->data()), bytes->size()});
 }
 
@@ -119,7 +119,7 @@ Result<void> load_state(const std::string& path, pvs::Bake& bake, const PvsReque
     if (path.empty() || !std::filesystem::exists(path)) return {};
     const auto file =
         bake::MappedFile::open(path, {.access = bake::FileAccess::read, .largest = options.read.limits.bytes});
-    if (!file) return tl::unexpected(file.error());
+    if (!file) return file.error();
     if (auto added = bake.add_state(file->bytes()); !added)
         return fail(added.error().code, kNoItem, path + ": " + added.error().message);
     return {};
@@ -164,7 +164,7 @@ Result<void> write_outputs(const Job& job, const pvs::Pvs& sets, std::size_t& fi
     const PvsRequest& options = job.options;
     if (!options.out.empty()) {
         const auto file = sets.to_file(job.scene_file);
-        if (!file) return tl::unexpected(file.error());
+        if (!file) return file.error();
         file_bytes = file->size() - job.scene_file.size();
         if (auto written = write_file(options.out, {reinterpret_cast<const char*>(file->data()), file->size()});
             !written)
@@ -310,7 +310,7 @@ Result<Views> look_from_places(const Job& job, const pvs::Pvs& sets, Executor& e
                                                  .user = &progress},
                                                 executor);
     if (!looked && looked.error().code == ErrorCode::cancelled) return Views{};
-    if (!looked) return tl::unexpected(looked.error());
+    if (!looked) return looked.error();
     return Views{*looked};
 }
 
@@ -321,9 +321,9 @@ Result<int> run_regions(const PvsRequest& options, Executor& executor) {
         options.map != fixed.map || options.instances != 0 || options.eyes != fixed.eyes || options.seconds > 0.0)
         return fail(ErrorCode::unsupported, kNoItem,
                     "--state, --out, --svg, --views, --map, --instances, --eyes and --seconds are not for a folder of "
-                    "regions: sets are written beside the regions, and a run continues where one was interrupted");
+                    "regions: sets are written next to the regions, and a run continues where one was interrupted");
     const auto shard = shard_from(options.shard);
-    if (!shard) return tl::unexpected(shard.error());
+    if (!shard) return shard.error();
     RegionSetsBake bake;
     bake.folder = options.scene;
     if (!options.cells.empty()) {
@@ -351,15 +351,15 @@ Result<int> run_pvs(const PvsRequest& options) {
     if (pipeline::holds_regions(options.scene)) return run_regions(options, pool);
     if (options.reach > 0.0) return fail(ErrorCode::invalid_argument, kNoItem, "--reach is for a folder of regions");
     auto job = make_job(options, pool);
-    if (!job) return tl::unexpected(job.error());
+    if (!job) return job.error();
     catch_interrupts();  // before, there is nothing to keep
     auto bake = pvs::Bake::create(job->scene.geometry, job->cells,
                                   {.epsilon = options.epsilon,
                                    .confidence = options.confidence,
                                    .seed = options.seed,
                                    .sides = options.sides == "front" ? occlude::Sides::front : occlude::Sides::both});
-    if (!bake) return tl::unexpected(bake.error());
-    if (auto traced = trace(*job, *bake, pool); !traced) return tl::unexpected(traced.error());
+    if (!bake) return bake.error();
+    if (auto traced = trace(*job, *bake, pool); !traced) return traced.error();
     if (interrupted())
         std::fprintf(stderr, "crofton: interrupted after %llu of %llu lines%s\n",
                      static_cast<unsigned long long>(bake->lines_done()),
@@ -368,15 +368,15 @@ Result<int> run_pvs(const PvsRequest& options) {
                                            : ": the next run continues from here");
     const bool all_lines = !interrupted();
     const auto sets = finish_sets(*job, *bake, pool);
-    if (!sets) return tl::unexpected(sets.error());
+    if (!sets) return sets.error();
     if (all_lines && interrupted())
         std::fputs("crofton: interrupted: pairs whose proof was not reached count as unseen, so that they are drawn\n",
                    stderr);
     finish_what_there_is();
     std::size_t file_bytes = 0;
-    if (auto written = write_outputs(*job, *sets, file_bytes); !written) return tl::unexpected(written.error());
+    if (auto written = write_outputs(*job, *sets, file_bytes); !written) return written.error();
     const auto views = look_from_places(*job, *sets, pool);
-    if (!views) return tl::unexpected(views.error());
+    if (!views) return views.error();
     if (options.views > 0 && !*views) std::fputs("crofton: interrupted: there are no figures of --views\n", stderr);
     if (options.json != "-") {
         print_figures(*job, *bake, *sets, file_bytes);
@@ -384,7 +384,7 @@ Result<int> run_pvs(const PvsRequest& options) {
     }
     if (!options.json.empty())
         if (auto written = write_json(options.json, figures(*job, *bake, *sets, file_bytes, *views)); !written)
-            return tl::unexpected(written.error());
+            return written.error();
     return interrupted() ? kInterrupted : kSuccess;
 }
 
@@ -404,7 +404,7 @@ void add_pvs_command(CommandLine& line) {
         "  crofton pvs town --shard 0/2 --state part0       half of the lines; the others: 1/2, part1\n"
         "  crofton merge part0 part1 --out town.state       then both together\n"
         "  crofton pvs town --state town.state --out town_pvs.crofton --views 1000\n"
-        "  crofton pvs regions/ --cells 8x1x8 --reach 50    sets beside each region of a folder");
+        "  crofton pvs regions/ --cells 8x1x8 --reach 50    a file of sets for each region of a folder");
     command
         .option(
             "scene", options->scene,

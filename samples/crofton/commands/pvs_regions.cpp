@@ -57,16 +57,16 @@ std::shared_ptr<const pipeline::SceneOccluders> occluders_of(const std::string& 
 Result<pvs::Pvs> sets_of(const RegionSetsBake& bake, const bake::RegionFile& region, const std::string& path) {
     const assets::ReadLimits limits{.bytes = bake.largest_file};
     auto source = assets::load_scene(path, {.limits = limits});
-    if (!source) return tl::unexpected(source.error());
+    if (!source) return source.error();
     scene::Scene& scene = source->scene;
     scene.update();
     const auto geometry = pvs::geometry_of(scene);
-    if (!geometry) return tl::unexpected(geometry.error());
+    if (!geometry) return geometry.error();
     const auto cells = cells_of(bake, region, scene);
-    if (!cells) return tl::unexpected(cells.error());
+    if (!cells) return cells.error();
     auto lines = pvs::Bake::create(*geometry, *cells, bake.lines);
-    if (!lines) return tl::unexpected(lines.error());
-    if (auto traced = lines->run({.should_stop = should_stop}); !traced) return tl::unexpected(traced.error());
+    if (!lines) return lines.error();
+    if (auto traced = lines->run({.should_stop = should_stop}); !traced) return traced.error();
     const auto found = occluders_of(path, scene, limits);
     std::vector<pvs::PlacedOccluder> occluders;
     for (const pipeline::SceneOccluders::Object& object : found->objects)
@@ -88,7 +88,7 @@ struct BakedSets {
 Result<void> bake_one(const RegionSetsBake& bake, const bake::RegionFile& region, BakedSets& totals) {
     const std::string path = bake.folder + "/" + region.name;
     const auto bytes = bake::MappedFile::open(path, {.access = bake::FileAccess::read, .largest = bake.largest_file});
-    if (!bytes) return tl::unexpected(bytes.error());
+    if (!bytes) return bytes.error();
     const pipeline::RegionSetsOf of{bake::checksum(bytes->bytes()), sum_of_options(bake), bake.proofs.near_radius};
     if (const auto known = pipeline::load_region_sets(bake.folder, region, of.region, bake.largest_file);
         known && *known && (*known)->of == of)
@@ -103,7 +103,7 @@ Result<void> bake_one(const RegionSetsBake& bake, const bake::RegionFile& region
     if (!sets) return fail(sets.error().code, sets.error().item, path + ": " + sets.error().message);
     const pvs::PairCounts pairs = sets->counts();
     const auto file = pipeline::to_file({of, std::move(*sets)});
-    if (!file) return tl::unexpected(file.error());
+    if (!file) return file.error();
     if (auto written = bake::write_file(bake.folder + "/" + pipeline::sets_name_of(region.name), *file); !written)
         return written;
     const std::lock_guard lock(totals.mutex);
@@ -116,7 +116,7 @@ Result<void> bake_one(const RegionSetsBake& bake, const bake::RegionFile& region
 Result<int> bake_all(const RegionSetsBake& bake, Executor& executor) {
     const Stopwatch watch;
     const auto index = bake::open_region_index(bake.folder, {.largest = bake.largest_file});
-    if (!index) return tl::unexpected(index.error());
+    if (!index) return index.error();
     std::vector<std::size_t> places;
     for (std::size_t i = bake.shard.index; i < index->size(); i += bake.shard.count) places.push_back(i);
     catch_interrupts();
@@ -130,7 +130,7 @@ Result<int> bake_all(const RegionSetsBake& bake, Executor& executor) {
         return one;
     });
     finish_what_there_is();
-    if (!baked) return tl::unexpected(baked.error());
+    if (!baked) return baked.error();
     const auto all = static_cast<double>(std::max<std::uint64_t>(1, totals.pairs.all()));
     if (bake.json != "-")
         std::printf(
@@ -149,7 +149,7 @@ Result<int> bake_all(const RegionSetsBake& bake, Executor& executor) {
                                                {"milliseconds", watch.milliseconds()},
                                                {"cpu_milliseconds", watch.cpu_milliseconds()}});
             !told)
-            return tl::unexpected(told.error());
+            return told.error();
     return interrupted() ? kInterrupted : kSuccess;
 }
 

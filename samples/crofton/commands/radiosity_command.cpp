@@ -68,7 +68,7 @@ Result<Camera> camera_for(const assets::SceneSource& source, std::uint64_t seed)
     }
     auto path =
         pipeline::make_camera_path({"orbit", 8, seed, 16.0 / 9.0, {}}, pipeline::focus_of(source.scene), source.walk);
-    if (!path) return tl::unexpected(path.error());
+    if (!path) return path.error();
     return path->cameras.front();
 }
 
@@ -82,7 +82,7 @@ template <class Add>
 Result<void> load(const std::string& path, Add&& add) {
     if (path.empty() || !std::filesystem::exists(path)) return {};
     const auto bytes = read_file(path);
-    if (!bytes) return tl::unexpected(bytes.error());
+    if (!bytes) return bytes.error();
     if (const Result<void> added = add(std::as_bytes(std::span(*bytes))); !added)
         return fail(added.error().code, kNoItem, path + ": " + added.error().message);
     return {};
@@ -134,7 +134,7 @@ Result<void> solve(const RadiosityOptions& options, const pvs::Shard& shard, rad
         if (!ran) return ran;
         done = interrupted() || bake.runs_done() == before;
         const auto bytes = bake.state();
-        if (!bytes) return tl::unexpected(bytes.error());
+        if (!bytes) return bytes.error();
         if (auto saved = save(options.checkpoint, *bytes); !saved) return saved;
     }
     return {};
@@ -152,16 +152,16 @@ Result<Light> find_light(const RadiosityOptions& options, const radiosity::Patch
     Light light;
     if (options.runs > 0) {
         const auto shard = shard_from(options.shard);
-        if (!shard) return tl::unexpected(shard.error());
+        if (!shard) return shard.error();
         auto bake = radiosity::Bake::create(patches, parameters, options.runs);
-        if (!bake) return tl::unexpected(bake.error());
+        if (!bake) return bake.error();
         light.bake.emplace(std::move(*bake));
-        if (auto solved = solve(options, *shard, *light.bake, executor); !solved) return tl::unexpected(solved.error());
+        if (auto solved = solve(options, *shard, *light.bake, executor); !solved) return solved.error();
     } else {
         auto solver = radiosity::Solver::create(patches, parameters);
-        if (!solver) return tl::unexpected(solver.error());
+        if (!solver) return solver.error();
         light.alone.emplace(std::move(*solver));
-        if (auto solved = solve(options, *light.alone, executor); !solved) return tl::unexpected(solved.error());
+        if (auto solved = solve(options, *light.alone, executor); !solved) return solved.error();
     }
     if (light.solver().runs() == 0 && interrupted())
         return fail(ErrorCode::cancelled, kNoItem, "interrupted in the first run: there is no light yet to write");
@@ -189,22 +189,22 @@ Result<LightStudies> study_light(const RadiosityOptions& options, const FoundLig
     LightStudies studies;
     if (interrupted()) return studies;
     const auto tracer = lines::LineTracer::build(found.lit.patches.mesh);
-    if (!tracer) return tl::unexpected(tracer.error());
+    if (!tracer) return tracer.error();
     if (!options.light_field.empty()) {
         const auto camera = camera_for(found.source, options.seed);
-        if (!camera) return tl::unexpected(camera.error());
+        if (!camera) return camera.error();
         auto drawn = draw_light_field({found.mesh, *tracer, found.parameters.outside.sky, *camera, found.exposure,
                                        options.stored_lines, options.seed, options.light_field},
                                       executor);
         if (!drawn && drawn.error().code == ErrorCode::cancelled) return studies;
-        if (!drawn) return tl::unexpected(drawn.error());
+        if (!drawn) return drawn.error();
         studies.field = *drawn;
     }
     if (options.reference > 0) {
         const auto compared =
             compare_to_reference(found.lit.patches, found.parameters, options.reference, found.solver, executor);
         if (!compared && compared.error().code == ErrorCode::cancelled) return studies;
-        if (!compared) return tl::unexpected(compared.error());
+        if (!compared) return compared.error();
         studies.reference = *compared;
     }
     const auto seen = lines::visibility_complexity(
@@ -216,42 +216,42 @@ Result<LightStudies> study_light(const RadiosityOptions& options, const FoundLig
 
 Result<int> run_radiosity(const RadiosityOptions& options) {
     const auto parameters = solver_options(options);
-    if (!parameters) return tl::unexpected(parameters.error());
+    if (!parameters) return parameters.error();
     if (!options.shard.empty() && (options.runs == 0 || options.checkpoint.empty()))
         return fail(ErrorCode::invalid_argument, kNoItem,
                     "--shard needs --runs, of the whole bake, and --state: the part to write");
     const auto source = load_updated_scene(options.scene, options.read, {.map = options.map, .seed = options.seed});
-    if (!source) return tl::unexpected(source.error());
+    if (!source) return source.error();
     const auto flat = assets::flat_scene(*source, options.read.limits);
-    if (!flat) return tl::unexpected(flat.error());
+    if (!flat) return flat.error();
     std::optional<SunEdges> sun;
     if (options.sun > 0.0 && options.shadow_cuts > 0) sun = {parameters->outside.to_sun, options.shadow_cuts};
     const auto lit = lit_scene(*flat, options.edge, sun);
-    if (!lit) return tl::unexpected(lit.error());
+    if (!lit) return lit.error();
     ThreadPool pool(options.threads);
     const auto start = Clock::now();
     catch_interrupts();  // before, there is nothing to keep
     const auto found = find_light(options, lit->patches, *parameters, pool);
-    if (!found) return tl::unexpected(found.error());
+    if (!found) return found.error();
     const radiosity::Solver* const solver = &found->solver();
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
     const TriangleMesh light = lit_mesh(*lit, *solver);
     const float exposure = automatic_exposure(*lit, *solver);
     const auto studied = study_light(options, {*source, *lit, *parameters, *solver, light, exposure}, pool);
-    if (!studied) return tl::unexpected(studied.error());
+    if (!studied) return studied.error();
     const auto& [field, reference, visibility] = *studied;
     const bool cut_short = interrupted();
     finish_what_there_is();
     TriangleMesh picture = light;
     for (glm::vec3& color : picture.colors) color = compressed(exposure * color);
     if (!options.out.empty())
-        if (auto written = write_glb(options.out, picture); !written) return tl::unexpected(written.error());
+        if (auto written = write_glb(options.out, picture); !written) return written.error();
     if (!options.png.empty()) {
         const auto camera = camera_for(*source, options.seed);
-        if (!camera) return tl::unexpected(camera.error());
+        if (!camera) return camera.error();
         const float sky = static_cast<float>(std::min(1.0, options.sky));
         if (auto written = write_lit_picture(options.png, picture, *camera, 1280, 720, sky); !written)
-            return tl::unexpected(written.error());
+            return written.error();
     }
     glm::dvec3 mean(0.0);
     double area = 0.0;
@@ -288,7 +288,7 @@ Result<int> run_radiosity(const RadiosityOptions& options) {
                      options.checkpoint.empty() ? "; with --checkpoint the next run would continue from here" : "");
     const int status = cut_short ? kInterrupted : kSuccess;
     if (!options.json.empty()) {
-        if (auto written = write_json(options.json, report); !written) return tl::unexpected(written.error());
+        if (auto written = write_json(options.json, report); !written) return written.error();
         return status;
     }
     if (solver->runs() == 0) {

@@ -66,15 +66,14 @@ Result<LightFieldReport> draw_light_field(const LightFieldRun& run, Executor& ex
     options.should_stop = should_stop;
     ProgressBar bar("radiosity: light field");
     const auto field = study::LightField::record(run.tracer, light, options, executor);
-    if (!field) return tl::unexpected(field.error());
+    if (!field) return field.error();
     const auto drawn = field->draw(run.camera, kPictureWidth, kPictureHeight, {});
-    if (!drawn) return tl::unexpected(drawn.error());
+    if (!drawn) return drawn.error();
     const auto direct =
         study::direct_picture(run.tracer, light, run.sky, run.camera, kPictureWidth, kPictureHeight, executor);
-    if (!direct) return tl::unexpected(direct.error());
+    if (!direct) return direct.error();
     const render::Image from_lines = shown(drawn->picture, run.exposure), from_scene = shown(*direct, run.exposure);
-    if (auto written = write_file(run.png_path, pipeline::encode_png(from_lines)); !written)
-        return tl::unexpected(written.error());
+    if (auto written = write_file(run.png_path, pipeline::encode_png(from_lines)); !written) return written.error();
     return LightFieldReport{field->lines(),
                             field->crossings(),
                             field->bytes(),

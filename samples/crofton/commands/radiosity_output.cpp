@@ -113,17 +113,17 @@ Result<LitScene> lit_scene(const assets::FlatScene& scene, double edge, const st
         edge = lengths.edge;
     }
     auto mended = radiosity::mend_t_junctions(scene.mesh, kTolerance);
-    if (!mended) return tl::unexpected(mended.error());
+    if (!mended) return mended.error();
     auto refined = lengths.edge > 0.0 ? radiosity::refine(mended->mesh, radiosity::EdgeLength(lengths))
                                       : radiosity::refine(mended->mesh, edge);
-    if (!refined) return tl::unexpected(refined.error());
+    if (!refined) return refined.error();
     std::optional<lines::LineTracer> tracer;
     if (sun) {
         auto built = lines::LineTracer::build(refined->mesh);
-        if (!built) return tl::unexpected(built.error());
+        if (!built) return built.error();
         tracer.emplace(std::move(*built));
         auto cut = radiosity::refine_at_shadows(*tracer, refined->mesh, sun->to_sun, sun->halvings);
-        if (!cut) return tl::unexpected(cut.error());
+        if (!cut) return cut.error();
         for (std::uint32_t& source : cut->source) source = refined->source[source];
         *refined = std::move(*cut);
     }
@@ -143,13 +143,13 @@ Result<LitScene> lit_scene(const assets::FlatScene& scene, double edge, const st
     }
     if (sun) {
         const auto lit = radiosity::sunlit_triangles(*tracer, result.patches.mesh, sun->to_sun);
-        if (!lit) return tl::unexpected(lit.error());
+        if (!lit) return lit.error();
         for (std::size_t t = 0; t < labels.size(); ++t) labels[t] += 2 * (*lit)[t];
     }
     const auto patches = radiosity::group_small_triangles(result.patches.mesh, labels, edge);
     const auto materials = mean_materials(result, patches);
     auto made = radiosity::make_patches(std::move(result.patches.mesh), patches, materials);
-    if (!made) return tl::unexpected(made.error());
+    if (!made) return made.error();
     result.patches = std::move(*made);
     return result;
 }
@@ -251,9 +251,9 @@ Result<void> write_lit_picture(const std::string& path, const TriangleMesh& mesh
     render::DeviceOptions wanted;
     wanted.kind = render::DeviceKind::any;
     auto device = render::Device::create(wanted);
-    if (!device) return tl::unexpected(device.error());
+    if (!device) return device.error();
     auto rasterizer = render::Rasterizer::create(*device, {.width = width, .height = height});
-    if (!rasterizer) return tl::unexpected(rasterizer.error());
+    if (!rasterizer) return rasterizer.error();
     Vector<render::Vertex> vertices;
     for (std::size_t v = 0; v < mesh.positions.size(); ++v)
         vertices.push_back(
@@ -271,7 +271,7 @@ Result<void> write_lit_picture(const std::string& path, const TriangleMesh& mesh
     frame.environment.haze_distance = 0.0f;
     for (glm::vec3* color : {&frame.environment.zenith, &frame.environment.horizon, &frame.environment.ground})
         *color *= sky;
-    if (auto drawn = rasterizer->draw(frame); !drawn) return tl::unexpected(drawn.error());
+    if (auto drawn = rasterizer->draw(frame); !drawn) return drawn.error();
     render::Image image;
     if (auto read = rasterizer->read_pixels(image); !read) return read;
     return write_file(path, pipeline::encode_png(image));
@@ -281,7 +281,7 @@ Result<ReferenceReport> compare_to_reference(const radiosity::Patches& patches, 
                                              std::uint64_t runs, const radiosity::Solver& found, Executor& executor) {
     options.seed += 1;
     auto reference = radiosity::Solver::create(patches, options);
-    if (!reference) return tl::unexpected(reference.error());
+    if (!reference) return reference.error();
     {
         ProgressBar bar("radiosity: reference", runs);
         for (; reference->runs() < runs; bar.set(reference->runs()))

@@ -83,7 +83,7 @@ Result<Vector<std::byte>> to_file(const RegionState& state) {
         files.push_back(done.file);
     }
     const auto index = bake::bake_region_index(files);
-    if (!index) return tl::unexpected(index.error());
+    if (!index) return index.error();
     bake::Writer writer;
     writer.add("rg_state", std::span<const StateRecord>(&whole, 1));
     writer.add("rg_done", std::span<const DoneRecord>(records));
@@ -98,15 +98,15 @@ bool is_region_state(std::span<const std::byte> file) {
 
 Result<RegionState> region_state_from(std::span<const std::byte> file) {
     const auto reader = bake::Reader::open(file);
-    if (!reader) return tl::unexpected(reader.error());
+    if (!reader) return reader.error();
     const auto whole = reader->section<StateRecord>("rg_state");
-    if (!whole) return tl::unexpected(whole.error());
+    if (!whole) return whole.error();
     const auto records = reader->section<DoneRecord>("rg_done");
-    if (!records) return tl::unexpected(records.error());
+    if (!records) return records.error();
     const auto index = reader->section<std::byte>("rg_files");
-    if (!index) return tl::unexpected(index.error());
+    if (!index) return index.error();
     const auto files = bake::read_region_index(*index);
-    if (!files) return tl::unexpected(files.error());
+    if (!files) return files.error();
     if (whole->size() != 1 || files->size() != records->size())
         return fail(ErrorCode::parse, kNoItem, "regions: the parts of the state do not fit");
     RegionState state{.key = whole->front().key, .regions = whole->front().regions, .done = {}};
@@ -122,7 +122,7 @@ Result<RegionState> region_state_from(std::span<const std::byte> file) {
 Result<void> check_region_file(const std::string& folder, const RegionState::Done& done, Executor& executor) {
     const std::string path = folder + "/" + done.file.name;
     const auto file = bake::MappedFile::open(path);
-    if (!file) return tl::unexpected(file.error());
+    if (!file) return file.error();
     if (file->bytes().size() == done.file.bytes && bake::checksum(file->bytes(), executor) == done.checksum) return {};
     return fail(ErrorCode::parse, kNoItem, path + ": is damaged, or is not the file that was baked");
 }
@@ -134,7 +134,7 @@ Result<std::vector<std::uint32_t>> merge_region_states(std::span<const std::stri
     const std::filesystem::path path(out);
     if (path.filename() != bake::kRegionIndexName)
         return fail(ErrorCode::invalid_argument, kNoItem,
-                    "--out: " + out + " must be FOLDER/" + bake::kRegionIndexName + ", beside the regions' files");
+                    "--out: " + out + " must be FOLDER/" + bake::kRegionIndexName + ", next to the regions' files");
     RegionState sum;
     for (std::size_t i = 0; i < parts.size(); ++i) {
         auto part = region_state_from(parts[i]);
@@ -159,12 +159,12 @@ Result<std::vector<std::uint32_t>> merge_region_states(std::span<const std::stri
     std::vector<bake::RegionFile> index;
     const std::string folder = path.has_parent_path() ? path.parent_path().string() : ".";
     for (const auto& [place, done] : sum.done) {
-        if (auto whole = check_region_file(folder, done, executor); !whole) return tl::unexpected(whole.error());
+        if (auto whole = check_region_file(folder, done, executor); !whole) return whole.error();
         index.push_back(done.file);
     }
     const auto file = bake::bake_region_index(index);
-    if (!file) return tl::unexpected(file.error());
-    if (auto written = bake::write_file(out, *file); !written) return tl::unexpected(written.error());
+    if (!file) return file.error();
+    if (auto written = bake::write_file(out, *file); !written) return written.error();
     return missing;
 }
 

@@ -101,10 +101,9 @@ void print_table(const TriangulateOptions& options, const Totals& t) {
 
 Result<int> run_polygons(const TriangulateOptions& options, Method method) {
     const auto file = read_polygons(options.file, options.map, options.read.limits);
-    if (!file) return tl::unexpected(file.error());
+    if (!file) return file.error();
     print_warnings(file->warnings);
-    if (auto whole = refuse_if_strict(options.file, file->warnings, options.read); !whole)
-        return tl::unexpected(whole.error());
+    if (auto whole = refuse_if_strict(options.file, file->warnings, options.read); !whole) return whole.error();
     const auto& polygons = file->polygons;
     std::vector<Triangulation> results(polygons.size());
     Json entries = Json::array();
@@ -140,7 +139,7 @@ Result<int> run_polygons(const TriangulateOptions& options, Method method) {
     finish_what_there_is();
     if (!options.svg.empty()) {
         if (auto written = write_file(options.svg, draw_svg(polygons, results, file->one_plane)); !written)
-            return tl::unexpected(written.error());
+            return written.error();
     }
     if (!options.json.empty()) {
         const Json document{{"file", assets::file_name(options.file)},
@@ -155,7 +154,7 @@ Result<int> run_polygons(const TriangulateOptions& options, Method method) {
                               {"optimal", totals.optimal},
                               {"weight", totals.weight},
                               {"microseconds", totals.microseconds}}}};
-        if (auto written = write_json(options.json, document); !written) return tl::unexpected(written.error());
+        if (auto written = write_json(options.json, document); !written) return written.error();
     }
     if (options.json != "-" && options.svg != "-") print_table(options, totals);
     if (totals.polygons + totals.refused < polygons.size()) {
@@ -168,7 +167,7 @@ Result<int> run_polygons(const TriangulateOptions& options, Method method) {
 
 Result<int> run_triangulate(const TriangulateOptions& options) {
     const auto method = method_from(options.method);
-    if (!method) return tl::unexpected(method.error());
+    if (!method) return method.error();
     if (!(options.seconds >= 0.0))
         return fail(ErrorCode::invalid_argument, kNoItem, "--time-limit must not be negative");
     if (!(options.attribute_tolerance >= 0.0))
@@ -177,7 +176,7 @@ Result<int> run_triangulate(const TriangulateOptions& options) {
         return fail(ErrorCode::invalid_argument, kNoItem, "--tolerance must not be negative");
     const std::string kind = assets::extension(options.file);
     const bool mesh = kind == "obj" || kind == "glb" || kind == "gltf" || assets::is_made(options.file);
-    if (auto file = assets::refuse_regions(options.file); !file) return tl::unexpected(file.error());
+    if (auto file = assets::refuse_regions(options.file); !file) return file.error();
     if (kind == "crofton")
         return fail(ErrorCode::unsupported, kNoItem,
                     options.file + ": holds triangulations that are baked; name the file that it was baked from");

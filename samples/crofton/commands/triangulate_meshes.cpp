@@ -28,11 +28,11 @@ Result<assets::GltfDocument> document_of(const std::string& file, const ReadOpti
     if (kind == "glb" || kind == "gltf") return assets::read_gltf_document(file, {.limits = options.limits});
     if (kind == "obj") {
         const auto obj = assets::read_obj(file, {.limits = options.limits});
-        if (!obj) return tl::unexpected(obj.error());
+        if (!obj) return obj.error();
         return assets::gltf_from_obj(*obj, assets::folder(file));
     }
     auto source = assets::load_scene(file, {.limits = options.limits, .strict = options.strict});
-    if (!source) return tl::unexpected(source.error());
+    if (!source) return source.error();
     source->scene.update();
     auto document = assets::gltf_from_scene(source->scene);
     document.warnings = std::move(source->warnings);
@@ -191,11 +191,10 @@ Result<int> run_meshes(const MeshRun& run) {
         return fail(ErrorCode::invalid_argument, kNoItem,
                     "--out writes binary glTF: name it .glb, not '" + run.out + "'");
     auto document = document_of(run.file, run.read);
-    if (!document) return tl::unexpected(document.error());
+    if (!document) return document.error();
     for (const auto& warning : document->warnings)
         std::fprintf(stderr, "crofton: warning: %s: %s\n", run.file.c_str(), warning.c_str());
-    if (auto whole = refuse_if_strict(run.file, document->warnings, run.read); !whole)
-        return tl::unexpected(whole.error());
+    if (auto whole = refuse_if_strict(run.file, document->warnings, run.read); !whole) return whole.error();
     assets::PatchSettings settings{run.triangulation, run.tolerance, run.attribute_tolerance};
     std::vector<PrimitivePatches> outcomes;
     {
@@ -214,7 +213,7 @@ Result<int> run_meshes(const MeshRun& run) {
     if (!run.out.empty()) {
         const auto glb = assets::write_glb(*document);
         if (!glb) return assets::in_file(run.out, "", glb.error());
-        if (auto written = write_file(run.out, *glb); !written) return tl::unexpected(written.error());
+        if (auto written = write_file(run.out, *glb); !written) return written.error();
     }
     Sums total;
     for (const PrimitivePatches& p : outcomes) {
@@ -224,7 +223,7 @@ Result<int> run_meshes(const MeshRun& run) {
     }
     const ByMesh meshes = by_mesh(outcomes);
     if (!run.json.empty())
-        if (auto written = write_report(run, meshes, total); !written) return tl::unexpected(written.error());
+        if (auto written = write_report(run, meshes, total); !written) return written.error();
     if (run.json != "-" && run.out != "-") print_table(meshes, total, outcomes);
     if (interrupted()) {
         std::fprintf(stderr, "crofton: interrupted: the remaining meshes are written unchanged\n");

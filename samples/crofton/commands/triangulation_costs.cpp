@@ -181,9 +181,9 @@ Result<std::vector<DrawCost>> draw_wall(std::span<const TriangulatedPolygon> pol
     render::DeviceOptions device_options;
     device_options.kind = render::DeviceKind::cpu;
     auto device = render::Device::create(device_options);
-    if (!device) return tl::unexpected(device.error());
+    if (!device) return device.error();
     auto rasterizer = render::Rasterizer::create(*device);
-    if (!rasterizer) return tl::unexpected(rasterizer.error());
+    if (!rasterizer) return rasterizer.error();
     const auto columns = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(polygons.size()))));
     const double side = 1.1 * static_cast<double>(columns);
     std::vector<DrawCost> result;
@@ -198,7 +198,7 @@ Result<std::vector<DrawCost>> draw_wall(std::span<const TriangulatedPolygon> pol
             for (const auto& t : polygons[i].results[m].triangles)
                 for (const std::uint32_t corner : t) indices.push_back(first + corner);
         }
-        if (auto set = rasterizer->set_geometry(vertices, indices); !set) return tl::unexpected(set.error());
+        if (auto set = rasterizer->set_geometry(vertices, indices); !set) return set.error();
         const render::DrawRange range{0, static_cast<std::uint32_t>(indices.size()), 0};
         sampling::Random random(8);
         DrawCost cost;
@@ -213,7 +213,7 @@ Result<std::vector<DrawCost>> draw_wall(std::span<const TriangulatedPolygon> pol
                 render::draw_transform(render::ModelToClip(camera)(glm::dmat3(1.0), glm::dvec3(0.0)), glm::dmat3(1.0));
             const auto start = std::chrono::steady_clock::now();
             const auto drawn = rasterizer->draw({camera, {&transform, 1}, {&range, 1}});
-            if (!drawn) return tl::unexpected(drawn.error());
+            if (!drawn) return drawn.error();
             times.push_back(
                 std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
             cost.submitted += static_cast<double>(drawn->input_assembly_primitives) / frames;

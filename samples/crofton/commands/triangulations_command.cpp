@@ -41,17 +41,17 @@ Result<std::vector<Polygon>> gather(const TriangulationsRequest& run) {
     };
     if (is_polygon_file(run.file)) {
         const auto file = read_polygons(run.file, run.map, run.read.limits);
-        if (!file) return tl::unexpected(file.error());
+        if (!file) return file.error();
         for (const auto& named : file->polygons) add(named.polygon);
         return result;
     }
     const auto source =
         assets::load_scene(run.file, {.map = run.map, .limits = run.read.limits, .strict = run.read.strict});
-    if (!source) return tl::unexpected(source.error());
+    if (!source) return source.error();
     for (scene::MeshId m = 0; m < source->scene.mesh_count(); ++m) {
         const TriangleMesh& mesh = source->scene.mesh(m);
         const auto patches = triangulate::find_planar_patches(mesh, assets::patch_tolerance(mesh, -1.0));
-        if (!patches) return tl::unexpected(patches.error());
+        if (!patches) return patches.error();
         for (const auto& patch : *patches) add(patch.polygon);
     }
     return result;
@@ -144,7 +144,7 @@ void print(const Study& study, const Comparison& passed, const QuadComparison& q
 // pixel quads, predicted and measured; triangles clipped and draw time.
 Result<int> run_triangulations(const TriangulationsRequest& run) {
     auto polygons = gather(run);
-    if (!polygons) return tl::unexpected(polygons.error());
+    if (!polygons) return polygons.error();
     const Study study = triangulate_all(std::move(*polygons));
     if (study.polygons.empty())
         return fail(ErrorCode::empty, kNoItem,
@@ -161,7 +161,7 @@ Result<int> run_triangulations(const TriangulationsRequest& run) {
                             {"frusta", run.frusta},
                             {"quad_size", kQuadSize},
                             {"methods", to_json(study, passed, quads, drawn)}};
-        if (auto written = write_json(run.json, document); !written) return tl::unexpected(written.error());
+        if (auto written = write_json(run.json, document); !written) return written.error();
     }
     if (run.json != "-") print(study, passed, quads, drawn, run.frusta);
     return kSuccess;

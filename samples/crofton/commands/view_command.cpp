@@ -23,11 +23,11 @@ struct ViewArguments {
 
 Result<void> run(ViewArguments arguments) {
     const auto size = image_size_from(arguments.size);
-    if (!size) return tl::unexpected(size.error());
+    if (!size) return size.error();
     const auto bounds = pipeline::bounds_kind_from(arguments.bounds);
-    if (!bounds) return tl::unexpected(bounds.error());
+    if (!bounds) return bounds.error();
     const auto mode = pipeline::cull_mode_from(arguments.cull);
-    if (!mode) return tl::unexpected(mode.error());
+    if (!mode) return mode.error();
     viewer::ViewerOptions& options = arguments.options;
     options.scene.limits = arguments.read.limits;
     options.scene.strict = arguments.read.strict;

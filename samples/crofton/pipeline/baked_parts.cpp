@@ -7,7 +7,7 @@
 namespace crofton::pipeline {
 namespace {
 
-tl::unexpected<Error> of_another_scene(const char* what, std::uint64_t item = kNoItem) {
+Error of_another_scene(const char* what, std::uint64_t item = kNoItem) {
     return fail(ErrorCode::invalid_argument, item,
                 std::string("was baked of another scene (") + what +
                     "): bake this one, with the same --map, --seed and --instances");
@@ -34,11 +34,11 @@ Result<void> check_same(const bake::BakedScene& baked, const scene::Scene& scene
 Result<BakedParts> parts_of(std::span<const std::byte> file, const scene::Scene& scene,
                             const assets::ReadLimits& limits) {
     const auto reader = bake::Reader::open(file);
-    if (!reader) return tl::unexpected(reader.error());
+    if (!reader) return reader.error();
     BakedParts parts;
     if (reader->has("occluder")) {
         const auto baked = bake::BakedScene::from_memory(file);
-        if (!baked) return tl::unexpected(baked.error());
+        if (!baked) return baked.error();
         if (auto same = check_same(*baked, scene); !same)
             parts.left_out.push_back(std::move(same.error()));
         else
@@ -46,9 +46,9 @@ Result<BakedParts> parts_of(std::span<const std::byte> file, const scene::Scene&
     }
     if (reader->has("pvs_head")) {
         auto sets = pvs::Pvs::from_memory(file, {.pairs = limits.bytes});  // a byte each
-        if (!sets) return tl::unexpected(sets.error());
+        if (!sets) return sets.error();
         if (!is_baked_of(*sets, scene))
-            parts.left_out.push_back(of_another_scene("its visible sets are of other triangles or places").value());
+            parts.left_out.push_back(of_another_scene("its visible sets are of other triangles or places"));
         else
             parts.pvs = std::make_shared<const pvs::Pvs>(std::move(*sets));
     }
@@ -83,7 +83,7 @@ bool is_baked_of(const pvs::Pvs& pvs, const scene::Scene& scene) {
 Result<BakedParts> load_baked_parts(const std::string& path, const scene::Scene& scene,
                                     const assets::ReadLimits& limits) {
     const auto file = bake::MappedFile::open(path, {.access = bake::FileAccess::read, .largest = limits.bytes});
-    if (!file) return tl::unexpected(file.error());
+    if (!file) return file.error();
     auto parts = parts_of(file->bytes(), scene, limits);
     if (!parts) return fail(parts.error().code, parts.error().item, {path, ": ", parts.error().message});
     for (Error& error : parts->left_out) error.message = path + ": " + std::string(error.message);

@@ -238,18 +238,18 @@ Result<Camera> camera_from_json(const Json& entry, std::uint64_t item) {
     for (auto [field, value] : {std::pair{"position", &camera.position}, std::pair{"forward", &camera.forward},
                                 std::pair{"up", &camera.up}}) {
         auto read = vector_from(entry, field, *value, item);
-        if (!read) return tl::unexpected(read.error());
+        if (!read) return read.error();
         *value = *read;
     }
     for (auto [field, value] : {std::pair{"fov_y", &camera.fov_y}, std::pair{"aspect", &camera.aspect},
                                 std::pair{"near", &camera.near_distance}, std::pair{"far", &camera.far_distance}}) {
         auto read = number_from(entry, field, *value, item);
-        if (!read) return tl::unexpected(read.error());
+        if (!read) return read.error();
         *value = *read;
     }
     if (entry.find("height") != nullptr) {
         auto height = number_from(entry, "height", camera.height, item);
-        if (!height) return tl::unexpected(height.error());
+        if (!height) return height.error();
         camera.projection = Projection::orthographic;
         camera.height = *height;
     }
@@ -259,7 +259,7 @@ Result<Camera> camera_from_json(const Json& entry, std::uint64_t item) {
 
 Result<CameraPath> load_camera_path(const std::string& path, const assets::ReadLimits& limits) {
     const auto text = assets::read_file(path, limits.bytes);
-    if (!text) return tl::unexpected(text.error());
+    if (!text) return text.error();
     if (auto shape = assets::check_json_shape(*text, limits); !shape) return assets::in_file(path, "", shape.error());
     Json document;
     if (!parse_json(*text, document)) return fail(ErrorCode::parse, kNoItem, path + ": not valid JSON");

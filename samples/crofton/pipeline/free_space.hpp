@@ -30,7 +30,7 @@ struct FreeSpaceOptions {
 // free where lines at eye height, at each side and at half the height meet nothing. y is up. Lines are single
 // precision: see lines::LineTracer.
 //
-// Of places that ways connect, those that are worth the most are kept. Places under a roof are worth the most, then
+// Keeps the connected places that are worth the most. Places under a roof are worth the most, then
 // those under the sky. Closed things whose faces look outward only have an inside as well, which is worth less, and
 // their bare roofs are worth the least.
 class FreeSpace {
@@ -45,7 +45,7 @@ class FreeSpace {
 
     [[nodiscard]] std::span<const glm::dvec3> places() const { return places_; }
     [[nodiscard]] double eye_height() const { return eye_height_; }  // of a place over its floor
-    // Of the rooms that the eye's height is a share of; 0 where it is not.
+    // Returns the height of the rooms that the eye's height is a share of; 0 if it is no share.
     [[nodiscard]] double room_height() const { return room_height_; }
     [[nodiscard]] double spacing() const { return spacing_; }  // of neighbouring places
     // Metres that a length of 1 is, by the options or as guessed; 0: no person fits in.

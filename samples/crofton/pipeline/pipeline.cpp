@@ -159,7 +159,7 @@ struct Pipeline::State {
             if (mesh.is_null()) {
                 const auto added = world.add_mesh(
                     {.positions = kind.mesh.positions, .indices = kind.mesh.indices, .triangles = false});
-                if (!added) return tl::unexpected(added.error());
+                if (!added) return added.error();
                 mesh = *added;
                 if (auto set = world.set_occluders(mesh, kind.found.occluders); !set) return set;
             }
@@ -169,7 +169,7 @@ struct Pipeline::State {
                                           .layers = kSeenLayer,
                                           .collides_with = 0,
                                           .only_occludes = true});
-            if (!added) return tl::unexpected(added.error());
+            if (!added) return added.error();
             occluding[object.node] = *added;
         }
         return {};
@@ -180,7 +180,7 @@ struct Pipeline::State {
         clusters = options.clusters;
         if (clusters) return {};
         auto cut = cut_scene(scene, executor);
-        if (!cut) return tl::unexpected(cut.error());
+        if (!cut) return cut.error();
         clusters = std::make_shared<const SceneClusters>(std::move(*cut));
         return {};
     }
@@ -285,7 +285,7 @@ struct Pipeline::State {
         depth_objects.clear();
         append_depth_objects(scene, *clusters, options.one_sided, visible_ids, camera, depth_objects);
         const auto found = depth_culler.find_visible(depth_objects, *options.picture, executor);
-        if (!found) return tl::unexpected(found.error());
+        if (!found) return found.error();
         frame.by_depth = true;
         frame.clusters.assign(found->begin(), found->end());
         for (depth::VisibleCluster& cluster : frame.clusters) {
@@ -317,7 +317,7 @@ struct Pipeline::State {
         // Looked up by 3 x 3 bilinear comparisons.
         const auto found = caster_culler.find_casters(casters, {options.shadow_map, options.shadow_map},
                                                       {&depth_culler, receivers, 2.0f}, executor);
-        if (!found) return tl::unexpected(found.error());
+        if (!found) return found.error();
         frame.find_us = microseconds_since(start);
         frame.casters = casters.size();
         for (const depth::DepthObject& o : casters) frame.triangles += o.mesh->triangle_order().size();
@@ -359,7 +359,7 @@ Result<Pipeline> Pipeline::create(const scene::Scene& scene, std::vector<scene::
     auto state = std::make_unique<State>(scene, std::move(movers), options, executor, std::move(occluders));
     for (const auto step : {&State::add_objects, &State::add_colliders, &State::add_occluders, &State::add_clusters,
                             &State::update_world})
-        if (auto done = (*state.*step)(); !done) return tl::unexpected(done.error());
+        if (auto done = (*state.*step)(); !done) return done.error();
     return Pipeline(std::move(state));
 }
 
@@ -384,11 +384,11 @@ std::shared_ptr<const SceneClusters> Pipeline::clusters() const {
 Result<FrameStatistics> Pipeline::run(const Camera& camera) {
     State& s = *state_;
     const auto frustum = frustum_of(camera);
-    if (!frustum) return tl::unexpected(frustum.error());
+    if (!frustum) return frustum.error();
     FrameStatistics frame;
     frame.camera = camera;
     const auto start = Clock::now();
-    if (auto followed = s.follow_scene(); !followed) return tl::unexpected(followed.error());
+    if (auto followed = s.follow_scene(); !followed) return followed.error();
     frame.update_us = microseconds_since(start);
     if (s.options.collide) s.count_pairs(frame);
     frame.update_us -= frame.collide_us;
@@ -410,13 +410,11 @@ Result<FrameStatistics> Pipeline::run(const Camera& camera) {
         frame.improper = counts.improper;
     }
     if (s.options.picture) {
-        if (auto found = s.find_triangles(camera, *frustum, frame.occlusion.emplace()); !found)
-            return tl::unexpected(found.error());
+        if (auto found = s.find_triangles(camera, *frustum, frame.occlusion.emplace()); !found) return found.error();
         if (s.options.shadow_map != 0)
-            if (auto found = s.find_casters(frame.shadow.emplace()); !found) return tl::unexpected(found.error());
+            if (auto found = s.find_casters(frame.shadow.emplace()); !found) return found.error();
     } else if (s.options.occlusion)
-        if (auto found = s.find_not_hidden(camera, *frustum, frame.occlusion.emplace()); !found)
-            return tl::unexpected(found.error());
+        if (auto found = s.find_not_hidden(camera, *frustum, frame.occlusion.emplace()); !found) return found.error();
     return frame;
 }
 

@@ -18,7 +18,7 @@ constexpr double kLowestEye = 0.05;
 Result<PvsScene> make_pvs_scene(const assets::SceneSource& source, bool with_occluders, Executor& executor) {
     const scene::Scene& scene = source.scene;
     auto geometry = pvs::geometry_of(scene, source.movers);
-    if (!geometry) return tl::unexpected(geometry.error());
+    if (!geometry) return geometry.error();
     PvsScene result;
     result.geometry = std::move(*geometry);
     if (!with_occluders) return result;

@@ -196,7 +196,7 @@ Result<PvsViewFigures> look_at_views(const scene::Scene& scene, const pvs::BakeG
     const auto space = FreeSpace::find(scene, focus_of(scene), {.unit = options.unit, .within = sets.cells().bounds()});
     if (stop.is_raised(0.0)) return stopped();
     auto tree = mesh::MeshTree::build(geometry.mesh, {.boxes = mesh::MeshBoxes::principal_axes, .rays = true});
-    if (!tree) return tl::unexpected(tree.error());
+    if (!tree) return tree.error();
     Looked all{geometry, sets, options, std::move(*tree), {}, {}, 0.0, 0.0, {}, 0.0};
     find_places(space, all);
     const auto no_place = [] {
@@ -207,7 +207,7 @@ Result<PvsViewFigures> look_at_views(const scene::Scene& scene, const pvs::BakeG
     if (options.occluders) {
         auto occluding = Pipeline::create(scene, {}, {.collide = false, .occlusion = OcclusionOptions{}},
                                           serial_executor(), options.occluders);
-        if (!occluding) return tl::unexpected(occluding.error());
+        if (!occluding) return occluding.error();
         all.occluding = std::move(*occluding);
     }
     all.triangles_of.assign(geometry.boxes.size(), 0);

@@ -203,7 +203,7 @@ struct RegionPipeline::State {
         return entry.region->sets->seen_by(camera, stream.index()[entry.place].origin);
     }
 
-    // Of the visible instances, those that no region's sets prove hidden.
+    // Keeps the visible instances that no region's sets prove hidden.
     void keep_in_sets(const Camera& camera, OccludedFrame& frame) const {
         const auto start = Clock::now();
         std::size_t next = 0;
@@ -266,7 +266,7 @@ RegionPipeline& RegionPipeline::operator=(RegionPipeline&&) noexcept = default;
 
 Result<RegionPipeline> RegionPipeline::open(const std::string& folder, const RegionPipelineOptions& options) {
     auto stream = RegionStream::open(folder, options.stream);
-    if (!stream) return tl::unexpected(stream.error());
+    if (!stream) return stream.error();
     if (stream->object_count() >= scene::kNone)
         return fail(ErrorCode::out_of_range, kNoItem, folder + ": has more than 2^32 - 2 objects");
     std::vector<scene::InstanceId> firsts;
@@ -286,11 +286,11 @@ Result<FrameStatistics> RegionPipeline::run(const Camera& given, Executor& execu
     Camera camera = given;
     camera.far_distance = std::min(camera.far_distance, far_within(s.stream.distance(), camera));
     const auto frustum = frustum_of(camera);
-    if (!frustum) return tl::unexpected(frustum.error());
+    if (!frustum) return frustum.error();
     FrameStatistics frame;
     frame.camera = camera;
     const auto streamed = s.stream.follow(camera.position);
-    if (!streamed) return tl::unexpected(streamed.error());
+    if (!streamed) return streamed.error();
     const auto start = Clock::now();
     s.follow_meshes();
     frame.regions = *streamed;
@@ -300,8 +300,7 @@ Result<FrameStatistics> RegionPipeline::run(const Camera& given, Executor& execu
                     "a region was baked without clusters, by which hidden triangles are found");
 
     const auto cull_start = Clock::now();
-    if (auto seen = s.stream.world().view({.volume = *frustum}, s.visible, executor); !seen)
-        return tl::unexpected(seen.error());
+    if (auto seen = s.stream.world().view({.volume = *frustum}, s.visible, executor); !seen) return seen.error();
     s.list_visible();
     frame.cull_us = us_since(cull_start);
     frame.instances = s.stream.object_count();
@@ -318,7 +317,7 @@ Result<FrameStatistics> RegionPipeline::run(const Camera& given, Executor& execu
     }
     if (s.options.picture || s.options.occlusion || s.options.by_sets)
         if (auto found = s.find_not_hidden(camera, *frustum, frame.occlusion.emplace(), executor); !found)
-            return tl::unexpected(found.error());
+            return found.error();
     return frame;
 }
 

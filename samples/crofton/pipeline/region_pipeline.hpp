@@ -56,7 +56,7 @@ class RegionPipeline {
     // The region of an instance, and the instance that is a region's first object.
     [[nodiscard]] std::uint32_t place_of(scene::InstanceId instance) const;
     [[nodiscard]] scene::InstanceId first_of(std::uint32_t place) const;
-    // Of an object in an answer of stream().world(); the other way round, null if its region is not attached.
+    // Map objects in answers of stream().world() to instances and back; null if the region is not attached.
     [[nodiscard]] scene::InstanceId instance_of(ObjectHandle object) const;
     [[nodiscard]] ObjectHandle object_of(scene::InstanceId instance) const;
     // A bit set of a region's objects that a camera may see, by the region's sets. Empty: none say it.

@@ -36,11 +36,11 @@ namespace {
 Result<RegionSets> read_sets(std::span<const std::byte> file, const bake::RegionFile& region, std::uint64_t checksum,
                              std::uint64_t largest_file) {
     const auto reader = bake::Reader::open(file);
-    if (!reader) return tl::unexpected(reader.error());
+    if (!reader) return reader.error();
     const auto of = reader->section<RegionSetsOf>("region");
-    if (!of) return tl::unexpected(of.error());
+    if (!of) return of.error();
     auto sets = pvs::Pvs::from_memory(file, {.pairs = largest_file});  // a byte each
-    if (!sets) return tl::unexpected(sets.error());
+    if (!sets) return sets.error();
     if (of->size() != 1 || of->front().region != checksum || sets->object_count() != region.objects)
         return fail(ErrorCode::invalid_argument, kNoItem,
                     "is not of " + region.name + " as it is now: run 'crofton pvs' on the folder again");
@@ -57,7 +57,7 @@ Result<std::shared_ptr<const RegionSets>> load_region_sets(const std::string& fo
     std::error_code unknown;
     if (!std::filesystem::exists(path, unknown)) return std::shared_ptr<const RegionSets>();
     const auto file = bake::MappedFile::open(path, {.access = bake::FileAccess::read, .largest = largest_file});
-    if (!file) return tl::unexpected(file.error());
+    if (!file) return file.error();
     auto sets = read_sets(file->bytes(), region, checksum, largest_file);
     if (!sets) return fail(sets.error().code, sets.error().item, path + ": " + sets.error().message);
     return std::make_shared<const RegionSets>(std::move(*sets));

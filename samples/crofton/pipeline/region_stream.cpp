@@ -83,7 +83,7 @@ Result<std::unique_ptr<StreamedRegion>> load(const std::string& folder, const ba
     // Read, not mapped: whoever writes the folder anew while it is flown over does no harm.
     const auto bytes =
         bake::MappedFile::open(path, {.access = bake::FileAccess::read, .largest = options.largest_file});
-    if (!bytes) return tl::unexpected(bytes.error());
+    if (!bytes) return bytes.error();
     auto scene = bake::BakedScene::from_memory(bytes->bytes());
     if (!scene) return fail(scene.error().code, scene.error().item, path + ": " + scene.error().message);
     if (scene->instances().size() != file.objects || bytes->bytes().size() != file.bytes)
@@ -100,7 +100,7 @@ Result<std::unique_ptr<StreamedRegion>> load(const std::string& folder, const ba
         if (layers[i] == 0) result->hidden.push_back(i);
     if (options.sets) {
         auto sets = load_region_sets(folder, file, bake::checksum(bytes->bytes()), options.largest_file);
-        if (!sets) return tl::unexpected(sets.error());
+        if (!sets) return sets.error();
         result->sets = std::move(*sets);
     }
     auto region = prepare(std::move(*scene), options);
@@ -225,7 +225,7 @@ struct RegionStream::State {
         slot.handle = *handle;
         slot.stage = Stage::attached;
         const auto first = slot.region->region.object_count() > 0 ? world.object_in(*handle, 0) : ObjectHandle{};
-        if (!first) return tl::unexpected(first.error());
+        if (!first) return first.error();
         const Attached entry{first->index, place, slot.region.get(), *handle};
         attached.insert(
             std::upper_bound(attached.begin(), attached.end(), entry,
@@ -239,7 +239,7 @@ struct RegionStream::State {
         std::vector<std::unique_ptr<StreamedRegion>> gone;
         for (Slot& slot : slots) {
             if (slot.stage != Stage::attached || slot.distance <= kKeep * options.distance) continue;
-            if (auto done = world.detach(slot.handle); !done) return tl::unexpected(done.error());
+            if (auto done = world.detach(slot.handle); !done) return done.error();
             std::erase_if(attached, [&](const Attached& entry) { return entry.region == slot.region.get(); });
             gone.push_back(std::move(slot.region));
             slot.stage = Stage::away;
@@ -260,7 +260,7 @@ RegionStream& RegionStream::operator=(RegionStream&&) noexcept = default;
 
 Result<RegionStream> RegionStream::open(const std::string& folder, const RegionStreamOptions& options) {
     auto index = bake::open_region_index(folder, {.largest = options.largest_file});
-    if (!index) return tl::unexpected(index.error());
+    if (!index) return index.error();
     if (index->empty()) return fail(ErrorCode::empty, kNoItem, folder + ": has no regions");
     auto state = std::make_unique<State>();
     state->folder = folder;
@@ -288,19 +288,19 @@ Result<StreamedFrame> RegionStream::follow(const glm::dvec3& eye) {
     s.wanted.notify_all();
     const auto asked = Clock::now();
     if (s.options.waits) s.loaded.wait(lock, [&] { return s.failed || s.has_what_is_needed(); });
-    if (s.failed) return tl::unexpected(*s.failed);
+    if (s.failed) return *s.failed;
     const auto start = Clock::now();
     frame.wait_us = duration<double, std::micro>(start - asked).count();
     auto gone = s.detach_far();
-    if (!gone) return tl::unexpected(gone.error());
+    if (!gone) return gone.error();
     frame.went = gone->size();
     for (const std::uint32_t place : s.arriving()) {
-        if (auto done = s.attach(place); !done) return tl::unexpected(done.error());
+        if (auto done = s.attach(place); !done) return done.error();
         frame.longest_load_ms = std::max(frame.longest_load_ms, s.slots[place].load_ms);
         ++frame.came;
     }
     do {
-        if (auto updated = s.world.update(); !updated) return tl::unexpected(updated.error());
+        if (auto updated = s.world.update(); !updated) return updated.error();
     } while (s.options.waits && s.options.places_occluders && s.world.statistics().occluders_waiting > 0);
     frame.attach_us = duration<double, std::micro>(Clock::now() - start).count();
     frame.attached = s.attached.size();

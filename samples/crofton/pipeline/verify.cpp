@@ -82,7 +82,7 @@ class FrameVerifier : public FrameReport {
         check_bound(i, clip_sphere(frustum_, sphere.center, sphere.radius));
     }
 
-    // Of a region that is not attached.
+    // Reports a region that meets the frustum and is not attached.
     void check_away(const std::string& name, const Aabb& bounds) {
         if (clip_box(frustum_, obb_of(bounds), interior_).meets == Truth::yes)
             report(verification_.culled_but_visible, name + " meets the frustum but was not attached");

@@ -211,7 +211,7 @@ VerifyRow surface_hit(const ShapeData& data, const VerifyOptions& options) {
 Result<std::vector<VerifyRow>> verify_collided_scene(const std::string& source, const assets::LoadOptions& which,
                                                      const VerifyOptions& options) {
     const auto data = read_shape_data(source, which);
-    if (!data) return tl::unexpected(data.error());
+    if (!data) return data.error();
     std::vector<VerifyRow> rows;
     if (!data->hulls.empty()) {
         rows.push_back(hulls_hold_points(*data));

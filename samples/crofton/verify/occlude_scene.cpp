@@ -36,12 +36,12 @@ Result<void> add_level(scene::Scene& scene, scene::NodeId node, const std::vecto
     TriangleMesh all;
     for (const scene::MeshId id : ids) append(all, scene.mesh(id));
     const auto mesh = stage.world.add_mesh({.positions = all.positions, .indices = all.indices, .triangles = false});
-    if (!mesh) return tl::unexpected(mesh.error());
+    if (!mesh) return mesh.error();
     const occlude::FindOptions how{.sides = occlude::Sides::both, .level_triangles = pipeline::kLevelTriangles};
     if (auto found = stage.world.find_occluders(*mesh, how); !found) return found;
     const auto object =
         stage.world.add({.mesh = *mesh, .node = stage.root, .transform = scene.world(node), .only_occludes = true});
-    if (!object) return tl::unexpected(object.error());
+    if (!object) return object.error();
     return {};
 }
 
@@ -62,7 +62,7 @@ Result<Stage> stage_of(assets::SceneSource& source) {
         if (ids.size() <= pipeline::kMostParts) objects.emplace_back(node, ids);
         if (ids.size() <= pipeline::kMostParts) continue;
         for (const scene::MeshId id : ids) objects.push_back({node, {id}});
-        if (auto added = add_level(scene, node, ids, stage); !added) return tl::unexpected(added.error());
+        if (auto added = add_level(scene, node, ids, stage); !added) return added.error();
     }
     std::map<std::vector<scene::MeshId>, MeshHandle> meshes;
     for (const auto& [node, ids] : objects) {
@@ -71,14 +71,14 @@ Result<Stage> stage_of(assets::SceneSource& source) {
             TriangleMesh all;
             for (const scene::MeshId id : ids) append(all, scene.mesh(id));
             const auto added = stage.world.add_mesh({.positions = all.positions, .indices = all.indices});
-            if (!added) return tl::unexpected(added.error());
+            if (!added) return added.error();
             mesh = *added;
             // Large patches, too: they are drawn in a way of their own.
             const occlude::FindOptions how{.sides = occlude::Sides::both, .max_patch_triangles = 1000};
-            if (auto found = stage.world.find_occluders(mesh, how); !found) return tl::unexpected(found.error());
+            if (auto found = stage.world.find_occluders(mesh, how); !found) return found.error();
         }
         const auto object = stage.world.add({.mesh = mesh, .node = stage.root, .transform = scene.world(node)});
-        if (!object) return tl::unexpected(object.error());
+        if (!object) return object.error();
     }
     for (Obb& box : stage.boxes) stage.things.push_back(stage.world.add({.bound = box}).value());
     stage.walk = source.walk;
@@ -174,9 +174,9 @@ void look(Random& random, const Stage& stage, ViewResult& visible, std::vector<b
 Result<std::vector<VerifyRow>> verify_occluded_scene(const std::string& name, const assets::LoadOptions& which,
                                                      const VerifyOptions& options) {
     auto source = assets::load_scene(name, which);
-    if (!source) return tl::unexpected(source.error());
+    if (!source) return source.error();
     auto stage = stage_of(*source);
-    if (!stage) return tl::unexpected(stage.error());
+    if (!stage) return stage.error();
     std::vector<VerifyRow> rows;
     const std::string level = which.map.empty() ? "" : " " + which.map;
     ViewResult visible;

@@ -32,14 +32,14 @@ struct Baked {
 
 Result<Baked> bake_town(const VerifyOptions& options) {
     auto source = assets::load_scene("town");
-    if (!source) return tl::unexpected(source.error());
+    if (!source) return source.error();
     source->scene.update();
     auto scene = pipeline::make_pvs_scene(*source, true);
-    if (!scene) return tl::unexpected(scene.error());
+    if (!scene) return scene.error();
     // Proofs take as long as all lines, whatever their number; few trials are for a quick look.
     const std::uint32_t side = options.trials < 100'000 ? 8 : 24;
     auto cells = pvs::Cells::grid(pipeline::eyes_of(source->scene, 10.0), {side, 2, side});
-    if (!cells) return tl::unexpected(cells.error());
+    if (!cells) return cells.error();
     // Lines through the cell among all, by surfaces; ε from (7).
     const auto surface = [](const Aabb& box) {
         const glm::dvec3 e = box.max - box.min;
@@ -50,10 +50,10 @@ Result<Baked> bake_town(const VerifyOptions& options) {
     const double epsilon = std::min(0.5, std::log(pairs / (1.0 - kConfidence)) / lines);
     auto bake = pvs::Bake::create(scene->geometry, *cells,
                                   {.epsilon = epsilon, .confidence = kConfidence, .seed = options.seed});
-    if (!bake) return tl::unexpected(bake.error());
-    if (auto ran = bake->run(); !ran) return tl::unexpected(ran.error());
+    if (!bake) return bake.error();
+    if (auto ran = bake->run(); !ran) return ran.error();
     auto sets = pvs::Pvs::finish(*bake, scene->occluders, {.near_radius = 0.0, .halvings = 2});
-    if (!sets) return tl::unexpected(sets.error());
+    if (!sets) return sets.error();
     return Baked{
         std::move(*source), std::move(*scene), std::move(*cells), std::move(*bake), std::move(*sets), epsilon, lines};
 }

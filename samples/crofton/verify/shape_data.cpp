@@ -62,7 +62,7 @@ void add_mesh(const TriangleMesh& mesh, ShapeData& data) {
 
 Result<ShapeData> data_of_scene(const std::string& source, const assets::LoadOptions& which) {
     auto loaded = assets::load_scene(source, which);
-    if (!loaded) return tl::unexpected(loaded.error());
+    if (!loaded) return loaded.error();
     scene::Scene& scene = loaded->scene;
     scene.update();
     ShapeData data;
@@ -81,7 +81,7 @@ Result<ShapeData> data_of_scene(const std::string& source, const assets::LoadOpt
     }
     add_mesh(all, data);
     auto tree = mesh::MeshTree::build(all);
-    if (!tree) return tl::unexpected(tree.error());
+    if (!tree) return tree.error();
     data.tree = std::move(*tree);
     Aabb bounds;
     for (std::size_t t = 0; t < all.indices.size() / 3; ++t) {
@@ -128,7 +128,7 @@ std::vector<std::uint32_t> raster(const PolygonFile& file) {
 
 Result<ShapeData> data_of_map(const std::string& source) {
     const auto file = read_polygons(source, "");
-    if (!file) return tl::unexpected(file.error());
+    if (!file) return file.error();
     const std::vector<std::uint32_t> over = raster(*file);
     std::vector<float> heights(over.size());
     for (std::size_t i = 0; i < over.size(); ++i) heights[i] = 0.5f * static_cast<float>(over[i] * 7 % 16);
@@ -142,7 +142,7 @@ Result<ShapeData> data_of_map(const std::string& source) {
     ShapeData data;
     auto field =
         convex::HeightField::build({.columns = kMapSide, .rows = kMapSide, .heights = heights, .materials = materials});
-    if (!field) return tl::unexpected(field.error());
+    if (!field) return field.error();
     data.field = std::move(*field);
     for (std::uint32_t t = 0; t < 2 * data.field->cell_count(); ++t)
         if (data.field->material(t / 2) != convex::kHole) data.triangles.push_back(data.field->triangle(t));

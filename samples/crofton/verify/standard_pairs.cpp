@@ -118,12 +118,12 @@ std::vector<StandardPair> standard_pairs() {
 Result<PairFactor> factor_by_global_lines(const StandardPair& pair, std::uint64_t blocks, std::uint64_t seed) {
     const Vector<radiosity::Material> materials(2);
     auto patches = radiosity::make_patches(pair.mesh, pair.patch_of_triangle, materials);
-    if (!patches) return tl::unexpected(patches.error());
+    if (!patches) return patches.error();
     const auto tracer = lines::LineTracer::build(pair.mesh);
-    if (!tracer) return tl::unexpected(tracer.error());
+    if (!tracer) return tracer.error();
     const lines::LineSource source(tracer->bounds(), lines::LineMethod::walls, seed);
     const auto matrix = radiosity::factors_by_global_lines(*tracer, *patches, source, blocks);
-    if (!matrix) return tl::unexpected(matrix.error());
+    if (!matrix) return matrix.error();
     return PairFactor{matrix->factor(0, 1), matrix->standard_error(0, 1), matrix->rays[0]};
 }
 

@@ -78,7 +78,7 @@ Result<void> ClusterColoring::classify(const assets::SceneSource& source, const 
     objects_.clear();
     pipeline::append_depth_objects(scene, clusters, source.one_sided, in_view, camera, objects_);
     const auto found = culler_.find_visible(objects_, picture);
-    if (!found) return tl::unexpected(found.error());
+    if (!found) return found.error();
     std::size_t next_in_view = 0, next_found = 0;
     for (scene::InstanceId i = 0; i < scene.instance_count(); ++i) {
         if (scene.is_removed(i) || scene.layer_masks()[i] == 0) continue;

@@ -54,7 +54,7 @@ Result<void> Session::build_interface() {
     const auto depth = show_depth();
     if (!depth) {
         ImGui::EndFrame();
-        return tl::unexpected(depth.error());
+        return depth.error();
     }
     const pipeline::FrameStatistics* drawn =
         frame_history_.entries().empty() ? nullptr : &frame_history_.entries().back().frame;

@@ -61,7 +61,7 @@ Result<std::unique_ptr<LoadedScene>> LoadedScene::load(const SceneRequest& reque
         return load_regions(request, settings);
     }
     const auto criterion = pipeline::criterion_for(method.bounds, typical_camera());
-    if (!criterion) return tl::unexpected(criterion.error());
+    if (!criterion) return criterion.error();
     assets::LoadOptions options;
     options.criterion = *criterion;
     options.map = request.map;
@@ -71,10 +71,10 @@ Result<std::unique_ptr<LoadedScene>> LoadedScene::load(const SceneRequest& reque
     options.strict = request.strict;
     options.unit = request.unit;
     auto source = assets::load_scene(request.source, options);
-    if (!source) return tl::unexpected(std::move(source.error()));
+    if (!source) return std::move(source.error());
     if (method.triangulation != Triangulation::loaded)
         if (auto cut = assets::retriangulate(*source, options, triangulation_method(method.triangulation)); !cut)
-            return tl::unexpected(std::move(cut.error()));
+            return std::move(cut.error());
     std::unique_ptr<LoadedScene> loaded(new LoadedScene(std::move(*source)));
     loaded->source_.scene.update();
     loaded->clusters_ = pipeline::take_clusters(loaded->source_);
@@ -86,9 +86,8 @@ Result<std::unique_ptr<LoadedScene>> LoadedScene::load(const SceneRequest& reque
     }
     loaded->focus_ = pipeline::focus_of(scene);
     loaded->shapes_.emplace(scene);
-    if (auto taken = loaded->take_baked(request, method, like); !taken) return tl::unexpected(std::move(taken.error()));
-    if (auto configured = loaded->configure(method, settings); !configured)
-        return tl::unexpected(std::move(configured.error()));
+    if (auto taken = loaded->take_baked(request, method, like); !taken) return std::move(taken.error());
+    if (auto configured = loaded->configure(method, settings); !configured) return std::move(configured.error());
     return loaded;
 }
 
@@ -96,7 +95,7 @@ Result<std::unique_ptr<LoadedScene>> LoadedScene::load_regions(const SceneReques
     auto regions = pipeline::RegionPipeline::open(
         request.source,
         {.stream = {.waits = request.waits_for_regions, .largest_file = request.limits.bytes, .sets = true}});
-    if (!regions) return tl::unexpected(std::move(regions.error()));
+    if (!regions) return std::move(regions.error());
     std::unique_ptr<LoadedScene> loaded(new LoadedScene({request.source, scene::Scene(), {}, {}, {}, {}}));
     loaded->regions_.emplace(std::move(*regions));
     const pipeline::RegionStream& stream = loaded->regions_->stream();
@@ -105,8 +104,7 @@ Result<std::unique_ptr<LoadedScene>> LoadedScene::load_regions(const SceneReques
     loaded->extent_ = stream.bounds();
     loaded->focus_ = {most->bounds.min + most->origin, most->bounds.max + most->origin};
     loaded->shapes_.emplace(loaded->scene());
-    if (auto configured = loaded->configure({}, settings); !configured)
-        return tl::unexpected(std::move(configured.error()));
+    if (auto configured = loaded->configure({}, settings); !configured) return std::move(configured.error());
     return loaded;
 }
 
@@ -125,10 +123,10 @@ Result<void> LoadedScene::take_baked(const SceneRequest& request, const Method& 
         }
     } else if (!request.baked.empty()) {
         auto parts = pipeline::load_baked_parts(request.baked, source_.scene, request.limits);
-        if (!parts) return tl::unexpected(std::move(parts.error()));
+        if (!parts) return std::move(parts.error());
         // Baked data is for the triangles as they were loaded; other triangulations may have others.
         if (!parts->left_out.empty() && method.triangulation == Triangulation::loaded)
-            return tl::unexpected(std::move(parts->left_out.front()));
+            return std::move(parts->left_out.front());
         for (Error& error : parts->left_out) source_.warnings.push_back(std::move(error.message));
         baked_ = std::move(*parts);
     }
@@ -150,7 +148,7 @@ Result<void> LoadedScene::configure(const Method& method, const Settings& settin
     } else {
         const auto occluders = pipeline_ && pipeline_->occluders() ? pipeline_->occluders() : baked_.occluders;
         auto made = pipeline::Pipeline::create(source_.scene, source_.movers, wanted, serial_executor(), occluders);
-        if (!made) return tl::unexpected(std::move(made.error()));
+        if (!made) return std::move(made.error());
         pipeline_.emplace(std::move(*made));
     }
     method_ = method;

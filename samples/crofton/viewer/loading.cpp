@@ -30,7 +30,7 @@ Result<void> Session::start() {
     wanted_size_ = {options_.width, options_.height};
     if (!options_.script.empty()) {
         auto actions = load_script(options_.script);
-        if (!actions) return tl::unexpected(std::move(actions.error()));
+        if (!actions) return std::move(actions.error());
         script_.assign(actions->begin(), actions->end());
     }
     if (options_.window)
@@ -44,7 +44,7 @@ Result<void> Session::start() {
 
 Result<void> Session::start_window() {
     auto window = Window::create("Crofton", static_cast<int>(options_.width), static_cast<int>(options_.height));
-    if (!window) return tl::unexpected(std::move(window.error()));
+    if (!window) return std::move(window.error());
     window_ = std::move(*window);
     return {};
 }
@@ -58,13 +58,13 @@ Result<void> Session::start_device() {
         wanted.device_extensions = Window::device_extensions();
     }
     auto device = render::Device::create(wanted);
-    if (!device) return tl::unexpected(std::move(device.error()));
+    if (!device) return std::move(device.error());
     device_ = std::make_unique<render::Device>(std::move(*device));
     render::RasterizerOptions size;
     size.width = options_.width;
     size.height = options_.height;
     auto rasterizer = render::Rasterizer::create(*device_, size);
-    if (!rasterizer) return tl::unexpected(std::move(rasterizer.error()));
+    if (!rasterizer) return std::move(rasterizer.error());
     rasterizer_ = std::make_unique<render::Rasterizer>(std::move(*rasterizer));
     return window_ ? window_->attach(device_->context()) : Result<void>{};
 }
@@ -83,10 +83,10 @@ Result<void> Session::start_interface() {
 
 Result<void> Session::start_ui_renderer() {
     auto ui = UiRenderer::create(device_->context());
-    if (!ui) return tl::unexpected(std::move(ui.error()));
+    if (!ui) return std::move(ui.error());
     ui_ = std::move(*ui);
     auto commands = render::Commands::create(device_->context());
-    if (!commands) return tl::unexpected(std::move(commands.error()));
+    if (!commands) return std::move(commands.error());
     ui_commands_ = std::move(*commands);
     return {};
 }
@@ -109,7 +109,7 @@ Result<void> Session::recover() {
 Result<void> Session::load(const SceneRequest& request) {
     const bool same_scene = loaded_ && request.source == request_.source && request.map == request_.map;
     auto loaded = LoadedScene::load(request, settings_.method, settings_, same_scene ? loaded_.get() : nullptr);
-    if (!loaded) return tl::unexpected(std::move(loaded.error()));
+    if (!loaded) return std::move(loaded.error());
     // First drop everything that refers to the old scene.
     list_.reset();
     contacts_ = {};
@@ -188,7 +188,7 @@ Result<void> Session::cut_clusters() {
     clusters_ = loaded_->clusters();
     if (!clusters_) {
         auto cut = pipeline::cut_scene(loaded_->scene(), serial_executor());
-        if (!cut) return lasting(tl::unexpected(std::move(cut.error())));
+        if (!cut) return lasting(std::move(cut.error()));
         clusters_ = std::make_shared<const pipeline::SceneClusters>(std::move(*cut));
     }
     list_geometry();
@@ -259,7 +259,7 @@ Result<void> Session::load_replay() {
     street.set(path);
     auto made =
         pipeline::make_camera_path(path, loaded_->regions() ? loaded_->extent() : loaded_->focus(), street.walk);
-    if (!made) return tl::unexpected(std::move(made.error()));
+    if (!made) return std::move(made.error());
     path_ = std::move(*made);
     replaying_ = true;
     return {};

@@ -25,7 +25,7 @@ Ray ray_through(const Camera& camera, const glm::dvec2& cursor) {
             glm::normalize(to_world * glm::dvec3(cursor.x * half * camera.aspect, cursor.y * half, -1.0))};
 }
 
-// Of all hits of bounds, the nearest first, whose triangles a ray meets.
+// Picks the nearest instance whose triangles the ray meets, among the hits of bounds, which come in order.
 template <class InstanceOf, class Raycast>
 std::optional<Pick> nearest_of(std::span<const ObjectHit> hits, std::span<const scene::InstanceId> candidates,
                                const Ray& ray, InstanceOf instance_of, Raycast raycast) {

@@ -11,7 +11,7 @@
 namespace crofton::viewer {
 namespace {
 
-tl::unexpected<Error> bad_event(const std::string& why) {
+Error bad_event(const std::string& why) {
     return fail(ErrorCode::parse, kNoItem, why);
 }
 
@@ -85,7 +85,7 @@ Result<void> parse_entry(const Json& entry, std::vector<Action>& actions) {
     for (const auto& [name, value] : entry.members()) {
         if (name == "frame") continue;
         auto action = parse_action(name, value);
-        if (!action) return tl::unexpected(std::move(action.error()));
+        if (!action) return std::move(action.error());
         action->frame = frame;
         actions.push_back(std::move(*action));
         if (name != "key") continue;
@@ -123,7 +123,7 @@ Result<std::vector<Action>> parse_script(const std::string& text) {
 
 Result<std::vector<Action>> load_script(const std::string& path) {
     auto text = assets::read_file(path);
-    if (!text) return tl::unexpected(std::move(text.error()));
+    if (!text) return std::move(text.error());
     auto actions = parse_script(*text);
     if (!actions) return fail(actions.error().code, actions.error().item, path + ": " + actions.error().message);
     return actions;

@@ -161,13 +161,13 @@ void Session::advance(double seconds) {
 
 Result<void> Session::cull() {
     auto frame = loaded_->run(culling_camera_);
-    if (!frame) return tl::unexpected(std::move(frame.error()));
+    if (!frame) return std::move(frame.error());
     frame_ = std::move(*frame);
     // What is seen is counted no farther than regions are attached.
     if (loaded_->regions()) culling_camera_.far_distance = frame_.camera.far_distance;
     if (other_) {
         auto compared = other_->run(culling_camera_);
-        if (!compared) return tl::unexpected(std::move(compared.error()));
+        if (!compared) return std::move(compared.error());
         other_frame_ = std::move(*compared);
     }
     cascades_.clear();
@@ -176,7 +176,7 @@ Result<void> Session::cull() {
             split_view(culling_camera_, settings_.cascades, 1.5 * glm::length(loaded_->extent().half_extents()));
     for (Cascade& cascade : cascades_) {
         const auto frustum = frustum_of(cascade.camera);
-        if (!frustum) return tl::unexpected(frustum.error());
+        if (!frustum) return frustum.error();
         (void)loaded_->pipeline().world().view({.volume = *frustum, .layers = pipeline::kSeenLayer}, cascade_visible_);
         cascade.visible = cascade_visible_.size();
     }
@@ -262,7 +262,7 @@ Result<void> Session::draw_other() {
     if (auto begun = submit(controller_.camera, 0); !begun) return begun;
     other_frame_.triangles_clipped = list_->predict_clipped();
     auto counters = rasterizer_->finish();
-    if (!counters) return tl::unexpected(std::move(counters.error()));
+    if (!counters) return std::move(counters.error());
     other_frame_.draw_us = microseconds_since(start);
     other_frame_.gpu = *counters;
     return {};
@@ -281,7 +281,7 @@ Result<void> Session::start_drawing() {
         // Use the extent of most triangles; with the far landscape the scene would be a speck.
         const double range = glm::length(loaded_->focus().half_extents());
         if (auto begun = submit_view(from_outside(culling_camera_, range), kInset, true); !begun) return begun;
-        if (auto done = rasterizer_->finish(); !done) return tl::unexpected(std::move(done.error()));
+        if (auto done = rasterizer_->finish(); !done) return std::move(done.error());
     }
     if (other_)
         if (auto drawn = draw_other(); !drawn) return drawn;
@@ -291,7 +291,7 @@ Result<void> Session::start_drawing() {
 
 Result<void> Session::finish_drawing() {
     auto counters = rasterizer_->finish();
-    if (!counters) return tl::unexpected(std::move(counters.error()));
+    if (!counters) return std::move(counters.error());
     frame_.draw_us = microseconds_since(draw_start_);
     frame_.gpu = *counters;
     if (options_.frames > 0 && frame_index_ + 1 == options_.frames && !options_.screenshot.empty())

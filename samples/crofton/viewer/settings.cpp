@@ -26,7 +26,7 @@ constexpr std::array<std::pair<const char*, bool Settings::*>, 16> kFlags{{{"com
                                                                            {"history", &Settings::history},
                                                                            {"paused", &Settings::paused}}};
 
-tl::unexpected<Error> bad_value(const std::string& name, const char* wanted) {
+Error bad_value(const std::string& name, const char* wanted) {
     return fail(ErrorCode::invalid_argument, kNoItem, "switch '" + name + "' takes " + wanted);
 }
 
@@ -35,7 +35,7 @@ template <class T>
 Result<void> set_parsed(T& target, const std::string& name, Result<T> (*parse)(const std::string&), const Json& value) {
     if (!value.is_string()) return bad_value(name, "a name");
     const auto parsed = parse(value.text());
-    if (!parsed) return tl::unexpected(parsed.error());
+    if (!parsed) return parsed.error();
     target = *parsed;
     return {};
 }

@@ -24,7 +24,7 @@ Result<void> Window::attach(const render::VulkanContext& context) {
                         "needs none");
     const auto& vk = context.vk;
     auto commands = render::Commands::create(context);
-    if (!commands) return tl::unexpected(std::move(commands.error()));
+    if (!commands) return std::move(commands.error());
     commands_ = std::move(*commands);
     const VkSemaphoreCreateInfo semaphore{VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO};
     result = vk.vkCreateSemaphore(context.device, &semaphore, nullptr, &acquired_);

@@ -27,7 +27,7 @@ Result<std::unique_ptr<UiRenderer>> UiRenderer::create(const render::VulkanConte
     auto made = ui->create_layouts();
     if (made) made = ui->create_pipeline();
     if (made) made = ui->upload_font();
-    if (!made) return tl::unexpected(std::move(made.error()));
+    if (!made) return std::move(made.error());
     return ui;
 }
 
@@ -89,13 +89,13 @@ Result<void> UiRenderer::create_layouts() {
 
 Result<void> UiRenderer::create_pipeline() {
     auto pass = render::create_render_pass(context_, {.keep_color = true});
-    if (!pass) return tl::unexpected(std::move(pass.error()));
+    if (!pass) return std::move(pass.error());
     pass_ = *pass;
     render::PipelineDescription description{
         render::shaders::ui_vert, render::shaders::ui_frag, kAttributes, {&kBinding, 1}};
     description.blend = true;
     auto made = render::create_pipeline(context_, description, layout_, pass_);
-    if (!made) return tl::unexpected(std::move(made.error()));
+    if (!made) return std::move(made.error());
     pipeline_ = *made;
     return {};
 }
@@ -105,7 +105,7 @@ Result<void> UiRenderer::set_target(VkImageView picture, VkExtent2D extent) {
     framebuffer_ = VK_NULL_HANDLE;
     extent_ = extent;
     auto made = render::create_framebuffer(context_, pass_, {&picture, 1}, extent);
-    if (!made) return tl::unexpected(std::move(made.error()));
+    if (!made) return std::move(made.error());
     framebuffer_ = *made;
     return {};
 }
@@ -130,7 +130,7 @@ Result<void> UiRenderer::upload(render::ImageResource& image, VkExtent2D& size, 
         auto made = render::ImageResource::create(context_, extent, VK_FORMAT_R8G8B8A8_UNORM,
                                                   VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
                                                   VK_IMAGE_ASPECT_COLOR_BIT);
-        if (!made) return tl::unexpected(std::move(made.error()));
+        if (!made) return std::move(made.error());
         image = std::move(*made);
         size = extent;
     }
@@ -139,7 +139,7 @@ Result<void> UiRenderer::upload(render::ImageResource& image, VkExtent2D& size, 
         return grown;
     std::memcpy(staging_.mapped, rgba, bytes);
     auto commands = render::Commands::create(context_);
-    if (!commands) return tl::unexpected(std::move(commands.error()));
+    if (!commands) return std::move(commands.error());
     if (auto begun = commands->begin(); !begun) return begun;
     constexpr VkPipelineStageFlags kTransfer = VK_PIPELINE_STAGE_TRANSFER_BIT;
     const auto barrier = [&](VkPipelineStageFlags before, VkPipelineStageFlags after,
@@ -176,7 +176,7 @@ Result<void> UiRenderer::upload_font() {
 
 Result<ImTextureID> UiRenderer::show_pixels(std::span<const std::uint32_t> rgba, VkExtent2D extent) {
     if (auto uploaded = upload(pixels_, pixels_size_, rgba.data(), extent); !uploaded)
-        return tl::unexpected(std::move(uploaded.error()));
+        return std::move(uploaded.error());
     point_at(pixels_set_, pixels_.view);
     return reinterpret_cast<ImTextureID>(pixels_set_);
 }

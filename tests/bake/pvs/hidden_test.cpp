@@ -82,7 +82,7 @@ Pvs finished(const Walls& walls, const Cells& cells, const ProofOptions& options
     return Pvs::finish(bake, walls.placed, options).value();
 }
 
-// Of all segments from the cell's corners to the object's box: how deep the least of them passes through the body.
+// How deep the least deep segment from the cell's corners to the object's box passes through the body.
 double least_depth(const Obb& body, const Aabb& cell, const Obb& object) {
     double least = HUGE_VAL;
     for (const glm::dvec3& q : corners(object))

@@ -20,7 +20,7 @@ constexpr double kPromised = 110.0;
 constexpr std::uint64_t kAsking = 2200;
 constexpr std::uint32_t kObjects = 8;
 
-// Of lines through the cell those that each object is seen along.
+// Counts the lines through the cell along which each object is seen.
 std::vector<std::uint64_t> hits_in(const BakeGeometry& geometry, const Aabb& box, sampling::Random random) {
     const Cells cell = Cells::boxes(std::vector<Aabb>{box}).value();
     std::vector<std::uint64_t> hits(kObjects, 0);
@@ -39,7 +39,7 @@ TEST_SUITE("pvs/promise") {
     // A pair's share p of the lines is estimated by p' = hits / kAsking. For p = ε there are 20·ln(P/δ) = 318 hits in
     // the mean, with a standard deviation of 6 %. So what is estimated above ε is above 0.75·ε, but for one pair in
     // 30,000. The bake missed that with a chance of (δ/P)^0.75 = 7·10^-6.
-    // Of all pairs at most Σ e^(−pN) are missed in the mean. As e^(−x) is convex, Σ e^(−p'N) is not less in the mean.
+    // On average at most Σ e^(−pN) of all pairs are missed. As e^(−x) is convex, Σ e^(−p'N) is not less in the mean.
     TEST_CASE(
         "20 times the lines find at most one missed pair above epsilon per 1,000 cells, below as the bound says") {
         const BakeGeometry geometry = random_geometry(1, kObjects);

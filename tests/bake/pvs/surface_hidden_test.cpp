@@ -269,7 +269,7 @@ TEST_SUITE("pvs/surface") {
                             add_box(geometry,
                                     box_around(geometry.origin + middle - glm::dvec3(0.0, 0.8, 0.0), glm::dvec3(0.3)));
                         }
-                    // Of every other maze the cells are convex.
+                    // Every other maze has convex cells.
                     std::vector<ConvexCell> convex;
                     for (const Aabb& box : boxes) convex.push_back(random_cell(random, box.center(), 0.9));
                     const Cells cells = seed % 2 ? Cells::boxes(boxes).value() : Cells::convex(convex).value();

@@ -49,7 +49,7 @@ TEST_SUITE("triangulate/slits") {
                 for (const auto& t : result->triangles) {
                     double middle = 0.0;
                     for (const std::uint32_t i : t) middle += p.points[i].x / 3.0;
-                    // Of the two points at (4, 8) the one beside (8, 8) is number 3 either way, the other 5 or 1.
+                    // The point at (4, 8) next to (8, 8) is number 3 either way; the other point there is 5 or 1.
                     const std::uint32_t wrong = middle < 4.0 ? 3 : backward ? 1 : 5;
                     if (middle != 4.0) CHECK(std::count(t.begin(), t.end(), wrong) == 0);
                 }

@@ -310,7 +310,7 @@ TEST_SUITE("triangulate/triangulate") {
                     CHECK(wrong == "");
                 }
             }
-            // Of the fixtures 10 are invalid: five cross themselves, five have no area or overlapping rings.
+            // Ten fixtures are invalid: five cross themselves, five have no area or overlapping rings.
             CHECK(errors == (file[0] == 'f' ? 30 : 0));
         }
     }

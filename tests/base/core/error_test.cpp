@@ -27,7 +27,7 @@ TEST_SUITE("core/error") {
 
     TEST_CASE("a message is made of texts and of numbers of each kind") {
         const std::string text = "text";
-        const Error error = fail(ErrorCode::parse, 7, {text, " ", 18446744073709551615u, " ", -5, " ", 0.5}).value();
+        const Error error = fail(ErrorCode::parse, 7, {text, " ", 18446744073709551615u, " ", -5, " ", 0.5});
         CHECK(error.code == ErrorCode::parse);
         CHECK(error.item == 7);
         CHECK(error.message == "text 18446744073709551615 -5 0.500000");
@@ -49,7 +49,7 @@ TEST_SUITE("core/error") {
             return 7;
         };
         const auto without = [&](bool good) -> Result<void> {
-            if (auto done = with(good); !done) return tl::unexpected(done.error());
+            if (auto done = with(good); !done) return done.error();
             return {};
         };
         CHECK(with(true).value() == 7);
@@ -63,7 +63,7 @@ TEST_SUITE("core/error") {
             try {
                 is_void ? without(false).value() : (void)with(false).value();
                 FAIL("there is no value");
-            } catch (const tl::bad_expected_access<Error>& bad) {
+            } catch (const BadResult& bad) {
                 CHECK(std::string(bad.what()) == "nothing is here");
                 CHECK(bad.error().code == ErrorCode::empty);
                 CHECK(bad.error().item == 3);
@@ -77,7 +77,7 @@ TEST_SUITE("core/error") {
         }
     }
 
-    TEST_CASE("a result is made of values, errors and other results as tl::expected is") {
+    TEST_CASE("a result is made of values, errors and other results") {
         Result<bool> yes = true;
         Result<bool> copy = yes;  // not a conversion to bool
         yes = Result<bool>(false);
@@ -88,8 +88,33 @@ TEST_SUITE("core/error") {
         const Result<std::optional<int>> none = std::nullopt;
         REQUIRE(none.has_value());
         CHECK_FALSE(none->has_value());
-        const Result<int> mapped = copy.map([](bool value) { return value ? 4 : 5; });
-        CHECK(mapped.value() == 4);
+    }
+
+    TEST_CASE("a result that is assigned lets go of the value or error that it had") {
+        using Shared = Result<std::shared_ptr<int>>;
+        const auto owned = std::make_shared<int>(3);
+        const Error error = fail(ErrorCode::io, 4, "a message that is too long for the room within a string");
+        Shared value = owned, none = error;
+        CHECK(owned.use_count() == 2);
+        Shared copy = value;
+        CHECK(owned.use_count() == 3);
+        copy = none;
+        CHECK(owned.use_count() == 2);
+        CHECK(copy.error().message == error.message);
+        copy = value;
+        CHECK(owned.use_count() == 3);
+        CHECK(*copy == owned);
+        const Shared& same = copy;
+        copy = same;
+        CHECK(owned.use_count() == 3);
+        none = std::move(copy);
+        CHECK(**none == 3);
+        value = Shared(error);
+        CHECK(owned.use_count() == 2);
+        CHECK(value.value_or(nullptr) == nullptr);
+        CHECK(none.value_or(nullptr) == owned);
+        static_assert(!std::is_copy_constructible_v<Result<std::unique_ptr<int>>>);
+        static_assert(std::is_nothrow_move_constructible_v<Result<std::unique_ptr<int>>>);
     }
 
 #if defined(__unix__) && !defined(__EMSCRIPTEN__)  // whose stderr stays the host's

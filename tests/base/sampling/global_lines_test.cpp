@@ -22,7 +22,7 @@ bool meets(const Line& line, const glm::dvec3& center, double radius) {
     return glm::dot(d, d) - along * along <= radius * radius;
 }
 
-// Of n lines with known chance p each, is `hits` within 4.5 standard errors?
+// Whether `hits` of n lines, each with the chance p, is within 4.5 standard errors.
 bool plausible(double hits, double n, double p) {
     return std::abs(hits - n * p) <= 4.5 * std::sqrt(n * p * (1.0 - p));
 }

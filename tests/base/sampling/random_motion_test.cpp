@@ -103,7 +103,7 @@ TEST_SUITE("sampling/random_motion") {
             low = glm::min(low, camera.position);
             high = glm::max(high, camera.position);
         }
-        // Of 100 in each third of the box's extent there are some: none would be by a chance of 1e-17.
+        // Some of 100 are in each third of the box's extent: none would be by a chance of 1e-17.
         for (int k = 0; k < 3; ++k) {
             CHECK(low[k] >= positions.min[k]);
             CHECK(high[k] <= positions.max[k]);

@@ -279,7 +279,7 @@ TEST_SUITE("boxtree/stored") {
         is_refused([](LeafRange& range) { range = {range.first, 1, 0}; });
         check_refused_after([](Stored& s) { std::swap(s.ranges[s.nodes[0].child[0]], s.ranges[s.nodes[0].child[1]]); },
                             "promises other leaves");
-        // Of one child nothing is promised: then nothing can be of those above it.
+        // If one child has no promise, its parents can have none.
         check_refused_after([](Stored& s) { s.ranges[s.nodes[0].child[0]] = {}; }, "promises other leaves");
     }
 

@@ -14,7 +14,7 @@ using fit::kernels::kLanes;
 TEST_SUITE("fit/small_set") {
     TEST_CASE(
         "around a flat triangle a turn finds the rectangle on its longest edge, in whatever direction that lies") {
-        // Of an obtuse triangle that rectangle alone has twice its area: base times height.
+        // Only that rectangle has twice the area of an obtuse triangle: base times height.
         constexpr double kHeight = 0.2, kTwiceArea = 2.0 * kHeight;
         for (int direction = 0; direction < 64; ++direction) {
             const double angle = (direction + 0.37) * std::numbers::pi / 32.0;
@@ -28,7 +28,7 @@ TEST_SUITE("fit/small_set") {
             }
             fit::kernels::Turn turn{{0.0f, 0.0f, 1.0f}, {1.0f, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f}, 0.0f, 0.0f, 0.0f};
             alignas(64) float scratch[2 * kLanes];
-            // Of a flat box, `pairs` weighs the rectangle's area.
+            // For a flat box `pairs` weighs the rectangle's area.
             fit::kernels::turn_frame({x, y, z, 3}, {0.0f, 1.0f, 0.0f}, scratch, turn);
             CAPTURE(direction);
             CHECK(double(turn.value) == doctest::Approx(kTwiceArea).epsilon(1e-5));

@@ -24,7 +24,7 @@ std::string text_of(const Vector<std::byte>& bytes) {
 
 Result<assets::SceneSource> through_a_file(const assets::SceneSource& source, bake::BakeOptions options = {}) {
     const auto bytes = assets::bake_source(source, serial_executor(), options);
-    if (!bytes) return tl::unexpected(bytes.error());
+    if (!bytes) return bytes.error();
     const TemporaryFile file("baked.crofton", text_of(*bytes));
     return assets::load_scene(file.path());
 }

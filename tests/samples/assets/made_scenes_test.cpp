@@ -77,7 +77,7 @@ double volume_of(const TriangleMesh& mesh) {
     return sum / 6.0;
 }
 
-// Of what there is and where, to a millimetre.
+// A digest of what there is and where, to a millimetre.
 std::uint64_t digest(const scene::Scene& scene) {
     std::uint64_t hash = 14695981039346656037ull;
     const auto add = [&](double value) {

@@ -163,7 +163,7 @@ assets::ObjFile read_face(const std::string& text) {
     return std::move(*obj);
 }
 
-// Of triangles that all face along `normal`; NaN where one does not.
+// The area of triangles that all face along `normal`; NaN if one does not.
 double area_along(const assets::ObjFile& obj, const glm::dvec3& normal) {
     double area = 0.0;
     for (const assets::ObjFile::Part& part : obj.parts)

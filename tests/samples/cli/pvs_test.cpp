@@ -135,7 +135,7 @@ TEST_SUITE("cli/pvs") {
                       quoted("part0") + " --shards 3 --out " + quoted("sum"))
                   .status == 0);
         CHECK(contents_of(scratch().file("sum")) == contents_of(scratch().file("whole")));
-        // Of another bake, or of another kind.
+        // States of another bake, or of another kind.
         REQUIRE(
             run_cli("study radiosity room --edge 2 --shadow-cuts 0 --runs 2 --state " + quoted("light_state")).status ==
             0);

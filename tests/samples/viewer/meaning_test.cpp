@@ -12,7 +12,7 @@ namespace {
 struct Rgb {
     int r, g, b;
 };
-// Of samples/crofton/viewer/overlay.cpp: the first four views, and the tree's bounds.
+// Colours of samples/crofton/viewer/overlay.cpp: the first four views, and the tree's bounds.
 constexpr std::array<Rgb, 4> kViews{{{255, 90, 90}, {255, 190, 70}, {130, 230, 90}, {70, 220, 220}}};
 constexpr Rgb kTree{110, 220, 255};
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Of the module's own parts: the tree that the broadphase's items come into and leave.
+// The broadphase's tree, which items come into and leave.
 #include <doctest/doctest.h>
 #include <algorithm>
 #include <limits>

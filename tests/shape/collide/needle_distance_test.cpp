@@ -36,7 +36,7 @@ class Difference {
         for (const Long3& edge : edges_) sum += glm::length(edge);
         return sum;
     }
-    // Of the gap of the slab across `direction`, which no distance is below.
+    // The gap of the slabs across `direction`: no distance is below it.
     [[nodiscard]] long double gap_along(const Long3& direction) const {
         long double gap = glm::dot(direction, offset_);
         for (const Long3& edge : edges_) gap -= std::abs(glm::dot(direction, edge));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Of the module's own parts: which boxes come to lie side by side.
+// Which boxes come to lie side by side in the broadphase's order.
 #include <doctest/doctest.h>
 #include <algorithm>
 #include <array>

@@ -126,7 +126,7 @@ TEST_SUITE("convex/surface_contact") {
                 for (int i = 0; i < m.count; ++i) parts.insert(m.points[i].part_a.triangle);
             }
             CHECK(told == doctest::Approx(deepest));
-            // Of parts whose normals agree the points that matter are kept.
+            // Where the normals of parts agree, the points that matter are kept.
             CHECK(std::includes(touched.begin(), touched.end(), parts.begin(), parts.end()));
             if (found.all().size() == touched.size()) CHECK(parts == touched);
             touching += touched.empty() ? 0 : 1;

@@ -22,7 +22,7 @@ Surface triangle_of(const glm::dvec3 (&corner)[3]) {
     return s;
 }
 
-// Of any form: also slivers, tiny ones, and edges along or nearly along the axes.
+// A triangle of any form: also a sliver, a tiny one, and one with edges along or nearly along the axes.
 Surface one_triangle(RandomShapes& random) {
     const double size = std::pow(10.0, random.number(-3.0, 1.0));
     glm::dvec3 corner[3];

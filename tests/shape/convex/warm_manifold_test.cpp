@@ -18,7 +18,7 @@ using namespace crofton::testing;
 
 namespace {
 
-// Of the points, in their order.
+// The area of the points' polygon, in their order.
 double area(const Manifold& m) {
     glm::dvec3 sum(0.0);
     for (int i = 1; i + 1 < m.count; ++i)

@@ -188,7 +188,7 @@ TEST_SUITE("mesh/ray") {
                 std::vector<Ray> rays;
                 for (std::size_t i = 0; i < count; ++i) {
                     Ray ray{eye + spread * random_vector(random), way + cone * random_vector(random)};
-                    // Of any length, along an axis, at a vertex, of a length that ends near the surface.
+                    // Directions of any length, along an axis, at a vertex, or ending near the surface.
                     if (trial % 4 == 1) ray.direction *= std::pow(10.0, static_cast<int>(random() % 3) - 1);
                     if (trial % 4 == 2) ray.direction[static_cast<int>(random() % 3)] = 0.0;
                     if (trial % 7 == 3) ray.direction = vertex(mesh, random() % mesh.triangle_count(), 0) - ray.origin;

@@ -65,7 +65,7 @@ TEST_SUITE("radiosity/bake") {
             CHECK(plain(sum) == expected);
             CHECK(missing_shards(sum, n).value().empty());
         }
-        // Of sums of sums, and where parts of two splits overlap.
+        // Sums of sums, and parts of two splits that overlap.
         std::vector<Vector<std::byte>> parts;
         for (std::uint32_t i = 0; i < 4; ++i) parts.push_back(job.part(i, 4));
         parts.push_back(job.part(1, 3));

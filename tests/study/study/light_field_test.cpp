@@ -167,7 +167,7 @@ TEST_SUITE("study/light_field") {
         ThreadPool pool(3);
         const study::LightFieldOptions options{.lines = 300'000, .sky = glm::vec3(0.25f)};
         const auto field = *study::LightField::record(tracer, light, options);
-        // Of the box the eye sees one face alone: no line, however far from the eye, tells of another.
+        // The eye sees only one face of the box: no line, however far from the eye, shows another.
         for (const auto& arrival : field.arrivals(camera.position, 100.0))
             if (!arrival.sky) CHECK(arrival.point.z == doctest::Approx(-1.5));
         const auto drawn = field.draw(camera, 60, 60, {});

@@ -2,10 +2,9 @@
 #include <doctest/doctest.h>
 #include <cmath>
 #include <crofton/occlude/occluder.hpp>
-#include <cstdio>
 #include <error_of.hpp>
-#include <fstream>
 #include <limits>
+#include <shared_mesh.hpp>
 #include <string>
 
 #include "view/occlude/found_bodies.hpp"
@@ -17,23 +16,6 @@ using namespace crofton::testing;
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-
-TriangleMesh mesh_of_file(const std::string& name) {
-    TriangleMesh mesh;
-    std::ifstream file(std::string(CROFTON_SHARED_DATA) + "/meshes/" + name + ".obj");
-    for (std::string line; std::getline(file, line);) {
-        glm::vec3 p;
-        if (std::sscanf(line.c_str(), "v %f %f %f", &p.x, &p.y, &p.z) == 3) mesh.positions.push_back(p);
-        if (line.rfind("f ", 0) != 0) continue;
-        std::vector<std::uint32_t> corner;
-        for (std::size_t at = 1; at != std::string::npos && at + 1 < line.size(); at = line.find(' ', at + 1))
-            if (line[at + 1] >= '0' && line[at + 1] <= '9')
-                corner.push_back(static_cast<std::uint32_t>(std::stoul(line.substr(at + 1)) - 1));
-        for (std::size_t i = 2; i < corner.size(); ++i)
-            for (const std::uint32_t index : {corner[0], corner[i - 1], corner[i]}) mesh.indices.push_back(index);
-    }
-    return mesh;
-}
 
 std::size_t bodies_of(const FoundOccluders& found) {
     return found.occluders.size() - count_of(found, OccluderKind::patch);
@@ -278,7 +260,7 @@ TEST_SUITE("occlude/find_occluders") {
     TEST_CASE("boxes in scanned and modelled meshes of the shared data are inside by exact arithmetic") {
         std::mt19937_64 random(16);
         for (const char* name : {"cow", "fandisk", "homer", "spider", "suzanne", "teapot", "woody", "wuson"}) {
-            const TriangleMesh mesh = mesh_of_file(name);
+            const TriangleMesh mesh = shared_mesh(name);
             if (mesh.indices.empty()) continue;  // no shared data
             CAPTURE(name);
             for (const Sides sides : {Sides::front, Sides::both})

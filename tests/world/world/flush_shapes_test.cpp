@@ -41,6 +41,23 @@ struct TiledWorld {
     }
 };
 
+World world_of(const Floor& floor, const RigidTransform& frame) {
+    World world;
+    for (const convex::CompoundChild& tile : floor.parts) {
+        const RigidTransform pose = placed_in(frame, tile.pose);
+        REQUIRE(world.add({.transform = Transform{pose.rotation, pose.translation}, .shape = &tile.shape}).has_value());
+    }
+    REQUIRE(world.update().has_value());
+    return world;
+}
+
+// Another kind of tiles each round.
+Floor floor_of(RandomShapes& random, int round) {
+    constexpr std::array kinds{Tiles::boxes, Tiles::turned_boxes, Tiles::hulls, Tiles::prisms};
+    if (round % 5 == 4) return triangulated(random, 0.5f, false);
+    return strips(random, kinds[static_cast<std::size_t>(round % 5)], round % 2 == 0, 0.5f);
+}
+
 }  // namespace
 
 TEST_SUITE("world/flush_shapes") {
@@ -50,11 +67,7 @@ TEST_SUITE("world/flush_shapes") {
         int touching = 0, several = 0;
         for (int round = 0; round < 8; ++round) {
             CAPTURE(round);
-            const Floor floor = round % 5 == 4 ? triangulated(random, 0.5f, false)
-                                               : strips(random,
-                                                        std::array{Tiles::boxes, Tiles::turned_boxes, Tiles::hulls,
-                                                                   Tiles::prisms}[static_cast<std::size_t>(round % 5)],
-                                                        round % 2 == 0, 0.5f);
+            const Floor floor = floor_of(random, round);
             const RigidTransform frame{round % 3 == 0 ? glm::dmat3(1.0) : random.rotation(),
                                        (round % 2 == 0 ? 0.0 : 100.0) * random.direction()};
             TiledWorld tiled(floor, frame, round == 1);
@@ -105,20 +118,10 @@ TEST_SUITE("world/flush_shapes") {
         const Sliders sliders(random);
         for (int round = 0; round < 80; ++round) {
             CAPTURE(round);
-            const Floor floor = round % 5 == 4 ? triangulated(random, 0.5f, false)
-                                               : strips(random,
-                                                        std::array{Tiles::boxes, Tiles::turned_boxes, Tiles::hulls,
-                                                                   Tiles::prisms}[static_cast<std::size_t>(round % 5)],
-                                                        round % 2 == 0, 0.5f);
+            const Floor floor = floor_of(random, round);
             const RigidTransform frame{round % 3 == 0 ? glm::dmat3(1.0) : random.rotation(),
                                        (round % 2 == 0 ? 0.0 : 100.0) * random.direction()};
-            World world;
-            for (const convex::CompoundChild& tile : floor.parts) {
-                const RigidTransform pose = placed_in(frame, tile.pose);
-                REQUIRE(world.add({.transform = Transform{pose.rotation, pose.translation}, .shape = &tile.shape})
-                            .has_value());
-            }
-            REQUIRE(world.update().has_value());
+            const World world = world_of(floor, frame);
             const glm::dvec3 up = frame.rotation[1];
             for (int i = 0; i < 40; ++i) {
                 const convex::Shape& mover = sliders.shapes[static_cast<std::size_t>(random.index(11))];
@@ -166,13 +169,7 @@ TEST_SUITE("world/flush_shapes") {
             const std::vector<glm::dvec3> corners = corners_of(floor);
             const RigidTransform frame{round % 2 == 0 ? glm::dmat3(1.0) : random.rotation(),
                                        (round % 5 == 0 ? 100.0 : 0.0) * random.direction()};
-            World world;
-            for (const convex::CompoundChild& tile : floor.parts) {
-                const RigidTransform pose = placed_in(frame, tile.pose);
-                REQUIRE(world.add({.transform = Transform{pose.rotation, pose.translation}, .shape = &tile.shape})
-                            .has_value());
-            }
-            REQUIRE(world.update().has_value());
+            const World world = world_of(floor, frame);
             for (int i = 0; i < 250; ++i) {
                 const int kind = random.index(11);
                 const convex::Shape& mover = sliders.shapes[static_cast<std::size_t>(kind)];

@@ -104,12 +104,12 @@ Result<Vector<std::byte>> bake(const scene::Scene& scene, Executor& executor, co
         if (const auto added =
                 add_tree(of_region.empty() ? boxes : of_region, scene.layer_masks(), writer, executor, options.tree);
             !added)
-            return tl::unexpected(added.error());
+            return added.error();
         if (!options.looks.empty()) add_looks(options.looks, scene.mesh_count(), writer);
         if (options.clusters) add_clusters(scene, known, writer, executor);
         if (options.occluders != nullptr)
             if (const auto added = add_occluders(*options.occluders, scene.node_count(), writer); !added)
-                return tl::unexpected(added.error());
+                return added.error();
         return writer.finish();
     });
 }

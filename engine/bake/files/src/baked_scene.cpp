@@ -15,14 +15,14 @@ bool lies_in(std::uint64_t first, std::uint64_t count, std::size_t size) {
     return first <= size && count <= size - first;
 }
 
-tl::unexpected<Error> damaged(const char* what, std::uint64_t item) {
+Error damaged(const char* what, std::uint64_t item) {
     return fail(ErrorCode::parse, item, what);
 }
 
 template <class T>
 Result<void> take(const Reader& reader, std::string_view name, std::span<const T>& section) {
     const auto found = reader.section<T>(name);
-    if (!found) return tl::unexpected(found.error());
+    if (!found) return found.error();
     section = *found;
     return {};
 }
@@ -88,7 +88,7 @@ Result<void> BakedScene::check_instances() const {
 Result<BakedScene> BakedScene::from_memory(std::span<const std::byte> file, Executor& executor) {
     return detail::recover([&]() -> Result<BakedScene> {
         const auto reader = Reader::open(file, executor);
-        if (!reader) return tl::unexpected(reader.error());
+        if (!reader) return reader.error();
         BakedScene baked;
         const Result<void> taken[] = {
             take(*reader, "meshes", baked.meshes_),      take(*reader, "position", baked.positions_),
@@ -98,20 +98,20 @@ Result<BakedScene> BakedScene::from_memory(std::span<const std::byte> file, Exec
             take(*reader, "instance", baked.instances_), take(*reader, "nodes", baked.nodes_),
         };
         for (const auto& each : taken)
-            if (!each) return tl::unexpected(each.error());
-        if (const auto good = baked.check_meshes(); !good) return tl::unexpected(good.error());
+            if (!each) return each.error();
+        if (const auto good = baked.check_meshes(); !good) return good.error();
         auto tree = read_tree(*reader);
-        if (!tree) return tl::unexpected(tree.error());
+        if (!tree) return tree.error();
         baked.tree_.emplace(std::move(*tree));
-        if (const auto good = baked.check_instances(); !good) return tl::unexpected(good.error());
+        if (const auto good = baked.check_instances(); !good) return good.error();
         const auto looks = read_looks(*reader, baked.meshes_.size());
-        if (!looks) return tl::unexpected(looks.error());
+        if (!looks) return looks.error();
         baked.looks_ = *looks;
         auto clusters = read_clusters(*reader, baked.meshes_);
-        if (!clusters) return tl::unexpected(clusters.error());
+        if (!clusters) return clusters.error();
         baked.clusters_ = std::move(*clusters);
         auto occluders = read_occluders(*reader, baked.nodes_.size());
-        if (!occluders) return tl::unexpected(occluders.error());
+        if (!occluders) return occluders.error();
         baked.occluders_ = std::move(*occluders);
         return baked;
     });
@@ -120,7 +120,7 @@ Result<BakedScene> BakedScene::from_memory(std::span<const std::byte> file, Exec
 Result<BakedScene> BakedScene::open(const std::string& path, Executor& executor, const FileOptions& options) {
     return detail::recover([&]() -> Result<BakedScene> {
         auto file = MappedFile::open(path, options);
-        if (!file) return tl::unexpected(file.error());
+        if (!file) return file.error();
         auto baked = from_memory(file->bytes(), executor);
         if (!baked) return fail(baked.error().code, baked.error().item, {path, ": ", baked.error().message});
         baked->file_.emplace(std::move(*file));

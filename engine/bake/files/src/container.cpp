@@ -14,7 +14,7 @@ constexpr std::size_t aligned(std::size_t size) {
     return (size + kAlignment - 1) / kAlignment * kAlignment;
 }
 
-tl::unexpected<Error> damaged(std::initializer_list<MessagePart> what, std::uint64_t item = kNoItem) {
+Error damaged(std::initializer_list<MessagePart> what, std::uint64_t item = kNoItem) {
     return fail(ErrorCode::parse, item, what);
 }
 
@@ -109,13 +109,13 @@ Result<Reader> Reader::open(std::span<const std::byte> file, Executor& executor)
         if (file.size() < sizeof(Header)) return damaged({"too short for a .crofton file"});
         Header header;
         std::memcpy(&header, file.data(), sizeof header);
-        if (const auto good = check_header(header, file.size()); !good) return tl::unexpected(good.error());
+        if (const auto good = check_header(header, file.size()); !good) return good.error();
         Reader reader;
         reader.file_ = file;
         reader.sections_ = {reinterpret_cast<const Section*>(file.data() + sizeof(Header)), header.section_count};
         if (header.table_checksum != checksum_of(header, reader.sections_))
             return damaged({"the header or the table of sections is damaged (its checksum differs)"});
-        if (const auto good = check_places(file, reader.sections_); !good) return tl::unexpected(good.error());
+        if (const auto good = check_places(file, reader.sections_); !good) return good.error();
         for (std::size_t i = 0; i < reader.sections_.size(); ++i) {
             const Section& section = reader.sections_[i];
             if (checksum(file.subspan(section.offset, section.size), executor) != section.checksum)

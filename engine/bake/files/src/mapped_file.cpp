@@ -28,11 +28,11 @@ struct Bytes {
     bool mapped = false;
 };
 
-tl::unexpected<Error> system_error(const std::string& path, const char* what) {
+Error system_error(const std::string& path, const char* what) {
     return fail(ErrorCode::io, kNoItem, {path, ": ", what, ": ", std::strerror(errno)});
 }
 
-tl::unexpected<Error> too_large(const std::string& path, std::uint64_t size, std::uint64_t largest) {
+Error too_large(const std::string& path, std::uint64_t size, std::uint64_t largest) {
     return fail(ErrorCode::out_of_range, kNoItem,
                 {path, ": ", size, " bytes, where the limit is ", largest, " (FileOptions::largest)"});
 }
@@ -77,7 +77,7 @@ Result<Bytes> map(const std::string& path, int file, std::size_t size) {
 // As many bytes as the file had when it was opened.
 Result<Bytes> read(const std::string& path, int file, std::size_t size) {
     const auto memory = room_for(size, path);
-    if (!memory) return tl::unexpected(memory.error());
+    if (!memory) return memory.error();
     std::size_t done = 0;
     ssize_t count = 1;
     while (done < size && count != 0) {
@@ -95,7 +95,7 @@ Result<Bytes> read(const std::string& path, int file, std::size_t size) {
 Result<Bytes> open_bytes(const std::string& path, const FileOptions& options) {
     Descriptor file{-1};
     const auto size = open_regular(path, options.largest, file);
-    if (!size) return tl::unexpected(size.error());
+    if (!size) return size.error();
     if (*size == 0) return Bytes{};
     return options.access == FileAccess::map ? map(path, file.number, *size) : read(path, file.number, *size);
 }
@@ -120,7 +120,7 @@ Result<Bytes> open_bytes(const std::string& path, const FileOptions& options) {
     if (contents.size() > options.largest) return too_large(path, contents.size(), options.largest);
     if (contents.empty()) return Bytes{};
     const auto memory = room_for(contents.size(), path);
-    if (!memory) return tl::unexpected(memory.error());
+    if (!memory) return memory.error();
     std::memcpy(*memory, contents.data(), contents.size());
     return Bytes{std::span<const std::byte>(*memory, contents.size()), false};
 }
@@ -132,9 +132,9 @@ void unmap(std::span<const std::byte>) {}
 }  // namespace
 
 Result<MappedFile> MappedFile::open(const std::string& path, const FileOptions& options) {
-    if (auto checked = check_path(path); !checked) return tl::unexpected(checked.error());
+    if (auto checked = check_path(path); !checked) return checked.error();
     const auto opened = open_bytes(path, options);
-    if (!opened) return tl::unexpected(opened.error());
+    if (!opened) return opened.error();
     return MappedFile(opened->bytes, opened->mapped);
 }
 

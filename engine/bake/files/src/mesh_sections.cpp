@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::uint8_t kOneSided = 1, kFlat = 2, kUnlit = 4;
 
-tl::unexpected<Error> bad_section(std::initializer_list<MessagePart> what, std::uint64_t mesh) {
+Error bad_section(std::initializer_list<MessagePart> what, std::uint64_t mesh) {
     return fail(ErrorCode::parse, mesh, what);
 }
 
@@ -70,9 +70,9 @@ Result<Vector<std::optional<depth::ClusteredMesh>>> read_clusters(const Reader& 
     Vector<std::optional<depth::ClusteredMesh>> result;
     if (!reader.has("clusters")) return result;
     const auto words = reader.section<std::uint32_t>("clusters");
-    if (!words) return tl::unexpected(words.error());
+    if (!words) return words.error();
     const auto ends = reader.section<std::uint64_t>("cluends");
-    if (!ends) return tl::unexpected(ends.error());
+    if (!ends) return ends.error();
     if (ends->size() != meshes.size() || (ends->empty() ? 0 : ends->back()) != words->size())
         return bad_section({"section 'cluends' does not end where 'clusters' does"}, kNoItem);
     result.resize(meshes.size());

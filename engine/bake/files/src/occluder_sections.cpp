@@ -11,7 +11,7 @@ namespace {
 using occlude::FoundOccluder;
 using occlude::OccluderKind;
 
-tl::unexpected<Error> bad_occluder(const char* what, std::uint64_t item) {
+Error bad_occluder(const char* what, std::uint64_t item) {
     return fail(ErrorCode::parse, item, {"occluders: ", what});
 }
 
@@ -132,11 +132,11 @@ Result<std::optional<BakedOccluders>> read_occluders(const Reader& reader, std::
     const auto nodes = reader.section<OccludingNode>("occnodes");
     const auto points = reader.section<glm::vec3>("occpoint");
     const auto indices = reader.section<std::uint32_t>("occindex");
-    if (!records) return tl::unexpected(records.error());
-    if (!kinds) return tl::unexpected(kinds.error());
-    if (!nodes) return tl::unexpected(nodes.error());
-    if (!points) return tl::unexpected(points.error());
-    if (!indices) return tl::unexpected(indices.error());
+    if (!records) return records.error();
+    if (!kinds) return kinds.error();
+    if (!nodes) return nodes.error();
+    if (!points) return points.error();
+    if (!indices) return indices.error();
 
     BakedOccluders result;
     // Ranges follow one another: else a small file could name one range a million times.
@@ -157,10 +157,10 @@ Result<std::optional<BakedOccluders>> read_occluders(const Reader& reader, std::
             next_index += record.index_count;
             list.push_back(occluder_of(record, points->subspan(record.first_point, record.point_count),
                                        indices->subspan(record.first_index, record.index_count)));
-            if (auto good = check_occluder(list.back(), i); !good) return tl::unexpected(good.error());
+            if (auto good = check_occluder(list.back(), i); !good) return good.error();
         }
     }
-    if (auto good = check_nodes(*nodes, kinds->size(), node_count); !good) return tl::unexpected(good.error());
+    if (auto good = check_nodes(*nodes, kinds->size(), node_count); !good) return good.error();
     result.nodes.assign(nodes->begin(), nodes->end());
     return std::optional<BakedOccluders>(std::move(result));
 }

@@ -142,7 +142,7 @@ Result<Vector<std::byte>> SceneRegions::bake(std::size_t i, const BakeOptions& o
             if (mesh == scene::kNone) {
                 const auto added =
                     scene.add_mesh(whole.mesh(whole.mesh_of(instance)), whole.mesh_name(whole.mesh_of(instance)));
-                if (!added) return tl::unexpected(added.error());
+                if (!added) return added.error();
                 mesh = *added;
                 maps.old_mesh.push_back(whole.mesh_of(instance));
             }
@@ -151,13 +151,12 @@ Result<Vector<std::byte>> SceneRegions::bake(std::size_t i, const BakeOptions& o
                 Transform transform = whole.world(whole.node_of(instance));
                 transform.translation -= part.file.origin;
                 const auto added = scene.add_node(scene::kNone, transform);
-                if (!added) return tl::unexpected(added.error());
+                if (!added) return added.error();
                 node = *added;
             }
             const auto added = scene.add_instance(node, mesh);
-            if (!added) return tl::unexpected(added.error());
-            if (auto set = scene.set_instance_layers(*added, whole.layer_masks()[instance]); !set)
-                return tl::unexpected(set.error());
+            if (!added) return added.error();
+            if (auto set = scene.set_instance_layers(*added, whole.layer_masks()[instance]); !set) return set.error();
         }
         scene.update();
         BakeOptions of_part = options;
@@ -179,7 +178,7 @@ Result<Vector<std::byte>> bake_region_index(std::span<const RegionFile> regions)
         Vector<char> names;
         for (std::size_t i = 0; i < regions.size(); ++i) {
             const RegionFile& region = regions[i];
-            if (auto good = check(region, i); !good) return tl::unexpected(good.error());
+            if (auto good = check(region, i); !good) return good.error();
             records.push_back({region.origin, region.bounds.min, region.bounds.max, region.objects, region.bytes,
                                static_cast<std::uint32_t>(names.size()),
                                static_cast<std::uint32_t>(region.name.size())});
@@ -195,11 +194,11 @@ Result<Vector<std::byte>> bake_region_index(std::span<const RegionFile> regions)
 Result<Vector<RegionFile>> read_region_index(std::span<const std::byte> file) {
     return detail::recover([&]() -> Result<Vector<RegionFile>> {
         const auto reader = Reader::open(file);
-        if (!reader) return tl::unexpected(reader.error());
+        if (!reader) return reader.error();
         const auto records = reader->section<RegionRecord>("regions");
-        if (!records) return tl::unexpected(records.error());
+        if (!records) return records.error();
         const auto names = reader->section<char>("names");
-        if (!names) return tl::unexpected(names.error());
+        if (!names) return names.error();
         Vector<RegionFile> regions;
         for (std::size_t i = 0; i < records->size(); ++i) {
             const RegionRecord& record = (*records)[i];
@@ -211,7 +210,7 @@ Result<Vector<RegionFile>> read_region_index(std::span<const std::byte> file) {
             region.bounds = {record.low, record.high};
             region.objects = record.objects;
             region.bytes = record.bytes;
-            if (auto good = check(region, i); !good) return tl::unexpected(good.error());
+            if (auto good = check(region, i); !good) return good.error();
         }
         return regions;
     });
@@ -220,7 +219,7 @@ Result<Vector<RegionFile>> read_region_index(std::span<const std::byte> file) {
 Result<Vector<RegionFile>> open_region_index(const std::string& folder, const FileOptions& options) {
     const std::string path = folder + "/" + kRegionIndexName;
     const auto file = MappedFile::open(path, options);
-    if (!file) return tl::unexpected(file.error());
+    if (!file) return file.error();
     auto regions = read_region_index(file->bytes());
     if (!regions && regions.error().code != ErrorCode::out_of_memory)
         return fail(regions.error().code, regions.error().item, {path, ": ", regions.error().message});
@@ -229,10 +228,10 @@ Result<Vector<RegionFile>> open_region_index(const std::string& folder, const Fi
 
 Result<Region> open_region(const std::string& folder, const RegionFile& file, const BakedRegionOptions& options,
                            const FileOptions& access, Executor& executor) {
-    if (auto good = check(file, kNoItem); !good) return tl::unexpected(good.error());
+    if (auto good = check(file, kNoItem); !good) return good.error();
     const std::string path = folder + "/" + file.name;
     const auto mapped = MappedFile::open(path, access);
-    if (!mapped) return tl::unexpected(mapped.error());
+    if (!mapped) return mapped.error();
     if (mapped->bytes().size() != file.bytes)
         return fail(ErrorCode::parse, kNoItem, {path, ": is not the file that the index names: its size is another"});
     auto baked = BakedScene::from_memory(mapped->bytes(), executor);

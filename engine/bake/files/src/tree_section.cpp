@@ -7,7 +7,7 @@ namespace crofton::bake {
 Result<void> add_tree(std::span<const Obb> boxes, std::span<const std::uint32_t> layer_masks, Writer& writer,
                       Executor& executor, boxtree::Orientation orientation) {
     const auto tree = boxtree::BoxTree::build(boxes, layer_masks, {.orientation = orientation}, executor);
-    if (!tree) return tl::unexpected(tree.error());
+    if (!tree) return tree.error();
     const Vector<std::byte> bytes = tree->serialise();
     writer.add("tree", std::span<const std::byte>(bytes));
     return {};
@@ -15,7 +15,7 @@ Result<void> add_tree(std::span<const Obb> boxes, std::span<const std::uint32_t>
 
 Result<boxtree::BoxTree> read_tree(const Reader& reader) {
     const auto bytes = reader.section<std::byte>("tree");
-    if (!bytes) return tl::unexpected(bytes.error());
+    if (!bytes) return bytes.error();
     return boxtree::BoxTree::deserialise(*bytes, boxtree::Trust::contents);
 }
 

@@ -22,7 +22,7 @@
 namespace crofton::bake {
 namespace {
 
-tl::unexpected<Error> write_error(const std::string& path, const char* what, int reason) {
+Error write_error(const std::string& path, const char* what, int reason) {
     return fail(ErrorCode::io, kNoItem, {path, ": ", what, ": ", std::strerror(reason)});
 }
 

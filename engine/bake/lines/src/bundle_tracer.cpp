@@ -177,7 +177,7 @@ BundleTracer& BundleTracer::operator=(BundleTracer&&) noexcept = default;
 
 Result<BundleTracer> BundleTracer::build(const TriangleMesh& mesh) {
     return crofton::detail::recover([&]() -> Result<BundleTracer> {
-        if (auto valid = validate(mesh); !valid) return tl::unexpected(valid.error());
+        if (auto valid = validate(mesh); !valid) return valid.error();
         if (mesh.indices.empty()) return fail(ErrorCode::empty, kNoItem, "bundle tracer: there are no triangles");
         if (mesh.triangle_count() >= std::size_t{1} << 30)
             return fail(ErrorCode::out_of_range, mesh.triangle_count(), "bundle tracer: 2^30 triangles or more");

@@ -71,7 +71,7 @@ LineTracer& LineTracer::operator=(LineTracer&&) noexcept = default;
 
 Result<LineTracer> LineTracer::build(const TriangleMesh& mesh) {
     return crofton::detail::recover([&]() -> Result<LineTracer> {
-        if (auto valid = validate(mesh); !valid) return tl::unexpected(valid.error());
+        if (auto valid = validate(mesh); !valid) return valid.error();
         if (mesh.indices.empty()) return fail(ErrorCode::empty, kNoItem, "line tracer: there are no triangles");
         if (mesh.triangle_count() >= std::size_t{1} << 30)
             return fail(ErrorCode::out_of_range, mesh.triangle_count(), "line tracer: 2^30 triangles or more");

@@ -249,11 +249,11 @@ Bake& Bake::operator=(Bake&&) noexcept = default;
 
 Result<Bake> Bake::create(const BakeGeometry& geometry, const Cells& cells, const BakeOptions& options) {
     return crofton::detail::recover([&]() -> Result<Bake> {
-        if (auto checked = check(geometry, cells, options); !checked) return tl::unexpected(checked.error());
+        if (auto checked = check(geometry, cells, options); !checked) return checked.error();
         auto tracer = lines::LineTracer::build(geometry.mesh);
-        if (!tracer) return tl::unexpected(tracer.error());
+        if (!tracer) return tracer.error();
         const auto plan = plan_lines(cells, cells.size() * geometry.boxes.size(), options);
-        if (!plan) return tl::unexpected(plan.error());
+        if (!plan) return plan.error();
         auto state = std::make_unique<State>();
         state->cells = cells;
         state->options = options;
@@ -361,7 +361,7 @@ Result<Vector<std::byte>> Bake::state() const {
 Result<void> Bake::add_state(std::span<const std::byte> state) {
     return crofton::detail::recover([&]() -> Result<void> {
         const auto part = found_from(state);
-        if (!part) return tl::unexpected(part.error());
+        if (!part) return part.error();
         if (!(part->name == state_->found.name))
             return fail(ErrorCode::invalid_argument, kNoItem,
                         "this is the state of another bake: scene, cells, epsilon, confidence, seed and sides must be "

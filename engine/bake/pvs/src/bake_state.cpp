@@ -73,15 +73,15 @@ Result<Found> found_from(std::span<const std::byte> bytes) {
         return fail(ErrorCode::parse, kNoItem, {"state of a pvs bake: ", what});
     };
     const auto reader = bake::Reader::open(bytes);
-    if (!reader) return tl::unexpected(reader.error());
+    if (!reader) return reader.error();
     const auto name = reader->section<BakeName>("pvs_bake");
     const auto done = reader->section<BlockRange>("pvs_done");
     const auto flags = reader->section<std::uint16_t>("pvs_flag");
     const auto seen = reader->section<std::uint64_t>("pvs_seen");
-    if (!name) return tl::unexpected(name.error());
-    if (!done) return tl::unexpected(done.error());
-    if (!flags) return tl::unexpected(flags.error());
-    if (!seen) return tl::unexpected(seen.error());
+    if (!name) return name.error();
+    if (!done) return done.error();
+    if (!flags) return flags.error();
+    if (!seen) return seen.error();
     if (name->size() != 1) return damaged("it has not one header");
     Found found;
     found.name = name->front();
@@ -131,7 +131,7 @@ Result<Vector<std::uint32_t>> missing_shards(std::span<const std::byte> state, s
     return crofton::detail::recover([&]() -> Result<Vector<std::uint32_t>> {
         if (count == 0) return fail(ErrorCode::invalid_argument, kNoItem, "a bake in 0 parts");
         const auto found = found_from(state);
-        if (!found) return tl::unexpected(found.error());
+        if (!found) return found.error();
         Vector<std::uint32_t> missing;
         for (std::uint32_t i = 0; i < count; ++i) {
             const BlockRange all = blocks_of({i, count}, found->name.blocks);

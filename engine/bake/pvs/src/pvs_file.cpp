@@ -22,7 +22,7 @@ struct Head {
 };
 static_assert(sizeof(Head) == 88);
 
-tl::unexpected<Error> damaged(const char* what, std::uint64_t item = kNoItem) {
+Error damaged(const char* what, std::uint64_t item = kNoItem) {
     return fail(ErrorCode::parse, item, {"potentially visible sets: ", what});
 }
 
@@ -87,16 +87,16 @@ struct PvsFile {
         const auto kinds = reader.section<CellKind>("pvs_kind");
         const auto baked = reader.section<std::uint64_t>("pvs_from");
         const auto code = reader.section<std::byte>("pvs_pair");
-        if (!head) return tl::unexpected(head.error());
-        if (!boxes) return tl::unexpected(boxes.error());
-        if (!kinds) return tl::unexpected(kinds.error());
-        if (!baked) return tl::unexpected(baked.error());
-        if (!code) return tl::unexpected(code.error());
+        if (!head) return head.error();
+        if (!boxes) return boxes.error();
+        if (!kinds) return kinds.error();
+        if (!baked) return baked.error();
+        if (!code) return code.error();
         if (head->size() != 1) return damaged("not one header");
         std::span<const ConvexCell> convex;
         if (has_convex(reader)) {
             const auto section = reader.section<ConvexCell>(kConvex);
-            if (!section) return tl::unexpected(section.error());
+            if (!section) return section.error();
             convex = *section;
         }
         auto cells = cells_from(head->front(), *boxes, convex);
@@ -146,7 +146,7 @@ Result<Vector<std::byte>> Pvs::to_file(std::span<const std::byte> scene_file) co
         bake::Writer writer;
         if (!scene_file.empty()) {
             const auto reader = bake::Reader::open(scene_file);
-            if (!reader) return tl::unexpected(reader.error());
+            if (!reader) return reader.error();
             if (reader->sections().size() + kMostSections > bake::kMaxSections)
                 return fail(ErrorCode::out_of_range, kNoItem, "the scene file has no room for more sections");
             for (const bake::Section& section : reader->sections()) {
@@ -164,7 +164,7 @@ Result<Vector<std::byte>> Pvs::to_file(std::span<const std::byte> scene_file) co
 Result<Pvs> Pvs::from_memory(std::span<const std::byte> file, const ReadLimits& limits) {
     return crofton::detail::recover([&]() -> Result<Pvs> {
         const auto reader = bake::Reader::open(file);
-        if (!reader) return tl::unexpected(reader.error());
+        if (!reader) return reader.error();
         return PvsFile::read(*reader, limits);
     });
 }
@@ -172,7 +172,7 @@ Result<Pvs> Pvs::from_memory(std::span<const std::byte> file, const ReadLimits& 
 Result<Pvs> Pvs::open(const std::string& path, const ReadLimits& limits) {
     return crofton::detail::recover([&]() -> Result<Pvs> {
         const auto file = bake::MappedFile::open(path);
-        if (!file) return tl::unexpected(file.error());
+        if (!file) return file.error();
         auto pvs = from_memory(file->bytes(), limits);
         if (!pvs) return fail(pvs.error().code, pvs.error().item, {path, ": ", pvs.error().message});
         return pvs;

@@ -279,7 +279,7 @@ PatchResult describe(const PlanarPatch& patch, std::string refused, bool lighter
 Result<Vector<PlanarPatch>> find_planar_patches(const TriangleMesh& mesh, double tolerance,
                                                 std::span<const VertexValues> values) {
     return detail::recover([&]() -> Result<Vector<PlanarPatch>> {
-        if (auto valid = validate(mesh); !valid) return tl::unexpected<Error>(valid.error());
+        if (auto valid = validate(mesh); !valid) return valid.error();
         for (std::size_t i = 0; i < values.size(); ++i)
             if (values[i].values.size() != values[i].components * mesh.positions.size())
                 return fail(ErrorCode::invalid_argument, i,
@@ -291,7 +291,7 @@ Result<Vector<PlanarPatch>> find_planar_patches(const TriangleMesh& mesh, double
 Result<PatchReport> retriangulate_planar_patches(TriangleMesh& mesh, const PatchOptions& options) {
     return detail::recover([&]() -> Result<PatchReport> {
         auto patches = find_planar_patches(mesh, options.tolerance, options.values);
-        if (!patches) return tl::unexpected<Error>(patches.error());
+        if (!patches) return patches.error();
         PatchReport report;
         Triangulator triangulator;
         Triangulation result;
@@ -303,7 +303,7 @@ Result<PatchReport> retriangulate_planar_patches(TriangleMesh& mesh, const Patch
             const auto begin = std::chrono::steady_clock::now();
             const auto done = triangulator.triangulate(patch.polygon, options.triangulation, result);
             if (!done && (done.error().code == ErrorCode::cancelled || done.error().code == ErrorCode::out_of_memory))
-                return tl::unexpected<Error>(done.error());
+                return done.error();
             std::string refused = done ? mismatch(mesh, patch, result) : done.error().message;
             const bool usable = refused.empty();
             report.refused += !usable;

@@ -77,13 +77,13 @@ Result<void> Triangulator::triangulate(const Polygon& polygon, const Triangulate
         Watch watch(options, polygon.points.size());
         if (options.method == Method::ear) {
             const auto clipped = workspace_->clip_simple_ring(polygon, result);
-            if (!clipped) return tl::unexpected<Error>(clipped.error());
+            if (!clipped) return clipped.error();
             if (*clipped) return {};
         }
         if (auto built = workspace_->domain.build(polygon); !built) return built;
         if (options.method == Method::minimum_weight) {
             const auto solved = workspace_->minimum_weight.solve(workspace_->domain, options, watch, result);
-            if (!solved) return tl::unexpected<Error>(solved.error());
+            if (!solved) return solved.error();
             if (!result.optimal && !workspace_->complete(watch, result)) {
                 result.triangles.clear();
                 return fail(ErrorCode::cancelled, kNoItem, "stopped by the caller");
@@ -112,7 +112,7 @@ Result<void> Triangulator::triangulate(const Polygon& polygon, const Triangulate
 }
 
 Result<bool> Triangulator::Workspace::clip_simple_ring(const Polygon& polygon, Triangulation& result) {
-    if (auto checked = domain.check(polygon); !checked) return tl::unexpected<Error>(checked.error());
+    if (auto checked = domain.check(polygon); !checked) return checked.error();
     const std::span<const glm::dvec2> points = polygon.points;
     if (polygon.ring_count() != 1 || points.size() > SimpleRing::kMostPoints || domain.scale() != 1.0) return false;
     const int turn = simple_ring.turn_of(points);
@@ -158,7 +158,7 @@ Result<Triangulation> triangulate(const Polygon& polygon, const TriangulateOptio
         Triangulator triangulator;
         Triangulation result;
         if (auto done = triangulator.triangulate(polygon, options, result); !done) {
-            return tl::unexpected<Error>(std::move(done.error()));
+            return std::move(done.error());
         }
         return result;
     });

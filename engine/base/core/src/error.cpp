@@ -76,14 +76,14 @@ void MessagePart::append_to(std::string& message) const {
     }
 }
 
-tl::unexpected<Error> fail(ErrorCode code, std::uint64_t item, std::initializer_list<MessagePart> message) noexcept {
+Error fail(ErrorCode code, std::uint64_t item, std::initializer_list<MessagePart> message) noexcept {
     Error error{code, item, {}};
     try {
         for (const MessagePart& part : message) part.append_to(error.message);
     } catch (const std::bad_alloc&) {
         error.message.clear();
     }
-    return tl::unexpected<Error>(std::move(error));
+    return error;
 }
 
 }  // namespace crofton

@@ -234,7 +234,7 @@ bool solid_hull(Prepared& prepared, ConvexHull& hull) {
 template <class Point>
 Result<ConvexHull> hull_of(std::span<const Point> points) {
     Result<Prepared> prepared = prepare(points);
-    if (!prepared) return tl::unexpected(prepared.error());
+    if (!prepared) return prepared.error();
     const Vector<glm::dvec3>& p = prepared->points;
     ConvexHull hull;
     // A segment, a triangle, a tetrahedron, each as large as a greedy choice makes it: their sizes determine the rank.

@@ -47,7 +47,7 @@ glm::dvec3 meet(const Plane& a, const Plane& b, const Plane& c) {
 }  // namespace
 
 Result<Frustum> frustum_of(const Camera& camera) {
-    if (auto valid = validate(camera); !valid) return tl::unexpected(valid.error());
+    if (auto valid = validate(camera); !valid) return valid.error();
     const glm::dmat3 rotation = world_to_view_rotation(camera);
     const glm::dvec3 right(rotation[0][0], rotation[1][0], rotation[2][0]);
     const glm::dvec3 up(rotation[0][1], rotation[1][1], rotation[2][1]);

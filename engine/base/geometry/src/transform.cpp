@@ -36,13 +36,13 @@ Result<Transform> from_trs(const glm::dvec3& translation, const glm::dquat& rota
     const bool is_unit = std::abs(squared - 1.0) <= kUnitRounding;
     Transform result{glm::mat3_cast(is_unit ? rotation : rotation / length), translation};
     for (int k = 0; k < 3; ++k) result.linear[k] *= scale[k];
-    if (auto valid = validate(result); !valid) return tl::unexpected(valid.error());
+    if (auto valid = validate(result); !valid) return valid.error();
     return result;
 }
 
 Result<Transform> from_matrix(const glm::dmat4& matrix) {
     const Transform transform{glm::dmat3(matrix), glm::dvec3(matrix[3])};
-    if (auto valid = validate(transform); !valid) return tl::unexpected(valid.error());
+    if (auto valid = validate(transform); !valid) return valid.error();
     for (int c = 0; c < 4; ++c)
         if (!(matrix[c][3] == (c == 3 ? 1.0 : 0.0)))
             return fail(ErrorCode::unsupported, kNoItem,

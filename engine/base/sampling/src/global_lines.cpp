@@ -95,7 +95,7 @@ Line line_from_box(const Obb& box, const std::array<double, 5>& u) {
 }
 
 Result<LinesFromHull> LinesFromHull::make(const TriangleMesh& hull) {
-    if (auto valid = validate(hull); !valid) return tl::unexpected(valid.error());
+    if (auto valid = validate(hull); !valid) return valid.error();
     return detail::recover([&]() -> Result<LinesFromHull> {
         LinesFromHull result;
         double area = 0.0;

@@ -107,7 +107,7 @@ Result<ItemId> BoxTree::new_item(const Obb& box, std::uint32_t layer_mask) {
 }
 
 Result<ItemId> BoxTree::insert(const Obb& box, std::uint32_t layer_mask) {
-    if (auto valid = crofton::validate(box, items_->next_id()); !valid) return tl::unexpected(valid.error());
+    if (auto valid = crofton::validate(box, items_->next_id()); !valid) return valid.error();
     auto item = new_item(box, layer_mask);
     if (!item) return item;
     rebuilder_->note_change(*item, true);

@@ -59,7 +59,7 @@ Result<BoxTree> BoxTree::build(std::span<const Obb> boxes, std::span<const std::
         if (!layer_masks.empty() && layer_masks.size() != boxes.size())
             return fail(ErrorCode::invalid_argument, kNoItem,
                         "box tree: as many layer masks as boxes are needed, or none");
-        if (auto valid = measure::validate(options.criterion); !valid) return tl::unexpected(valid.error());
+        if (auto valid = measure::validate(options.criterion); !valid) return valid.error();
         Vector<std::uint64_t> moving((boxes.size() + 63) / 64, 0);
         for (const ItemId item : options.moving) {
             if (item >= boxes.size())
@@ -72,8 +72,7 @@ Result<BoxTree> BoxTree::build(std::span<const Obb> boxes, std::span<const std::
         BoxTree tree(options.criterion, options.orientation);
         Items& items = *tree.items_;
         Aabb centers;
-        if (auto taken = items.assign(boxes, layer_masks, centers, options.room); !taken)
-            return tl::unexpected(taken.error());
+        if (auto taken = items.assign(boxes, layer_masks, centers, options.room); !taken) return taken.error();
         for (const ItemId item : options.detached) {
             if (item >= boxes.size())
                 return fail(ErrorCode::out_of_range, item, "box tree: no box for an item to detach");

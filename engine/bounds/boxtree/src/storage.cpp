@@ -121,7 +121,7 @@ Result<BoxTree> BoxTree::deserialise(std::span<const std::byte> bytes, Trust tru
         });
         structure.reset_marks();
         find_detached(items, structure);
-        if (auto valid = measure::validate(criterion); !valid) return tl::unexpected(valid.error());
+        if (auto valid = measure::validate(criterion); !valid) return valid.error();
         if (auto valid = boxtree::validate(structure, trust); !valid)
             return fail(ErrorCode::parse, valid.error().item, {"stored ", valid.error().message});
         return tree;

@@ -12,7 +12,7 @@
 namespace crofton::boxtree {
 namespace {
 
-tl::unexpected<Error> broken(std::uint64_t item, const char* what) {
+Error broken(std::uint64_t item, const char* what) {
     return fail(ErrorCode::internal, item, {"box tree: ", what});
 }
 

@@ -20,9 +20,9 @@ template <class Point>
 Result<Obb> around(std::span<const Point> points, const glm::mat3& axes) {
     Obb shape;
     shape.axes = axes;
-    if (auto valid = validate(shape); !valid) return tl::unexpected(valid.error());
+    if (auto valid = validate(shape); !valid) return valid.error();
     PointCloud cloud;
-    if (auto valid = cloud.assign(points); !valid) return tl::unexpected(valid.error());
+    if (auto valid = cloud.assign(points); !valid) return valid.error();
     return cloud.has_more_than(kSmallSet) ? enclose(cloud, axes) : enclose_small_set(cloud, axes);
 }
 

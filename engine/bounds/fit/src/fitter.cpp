@@ -222,10 +222,12 @@ Result<Obb> Fitter::fit(std::span<const Point> points, const FitOptions& options
     if (options.quality == Quality::exact) {
         ExactOptions exact_options;
         exact_options.criterion = options.criterion;
-        return exact(points, exact_options).map([](const ExactFit& fit) { return fit.box; });
+        const auto best = exact(points, exact_options);
+        if (!best) return best.error();
+        return best->box;
     }
-    if (auto valid = measure::validate(options.criterion); !valid) return tl::unexpected(valid.error());
-    if (auto valid = assign(points); !valid) return tl::unexpected(valid.error());
+    if (auto valid = measure::validate(options.criterion); !valid) return valid.error();
+    if (auto valid = assign(points); !valid) return valid.error();
     const Weights asked = normalised_weights(options.criterion, cloud_.unit()).weights;
     if (cloud_.has_more_than(kSmallSet)) return fit_large_set(asked, options);
     return options.quality == Quality::fast ? fit_small_set_fast(asked) : fit_small_set_tight(asked, options.criterion);
@@ -236,12 +238,12 @@ template Result<Obb> Fitter::fit(std::span<const glm::dvec3>, const FitOptions&)
 
 template <class Point>
 Result<ExactFit> Fitter::exact(std::span<const Point> points, const ExactOptions& options) {
-    if (auto valid = measure::validate(options.criterion); !valid) return tl::unexpected(valid.error());
+    if (auto valid = measure::validate(options.criterion); !valid) return valid.error();
     if (!(options.gap >= 1e-12 && options.gap < 1.0))
         return fail(ErrorCode::invalid_argument, kNoItem, "fit_exact: the gap must lie in [1e-12, 1)");
     if (!(options.time_budget_seconds >= 0.0))
         return fail(ErrorCode::invalid_argument, kNoItem, "fit_exact: the time budget is negative or NaN");
-    if (auto valid = assign(points); !valid) return tl::unexpected(valid.error());
+    if (auto valid = assign(points); !valid) return valid.error();
     const NormalisedWeights normalised = normalised_weights(options.criterion, cloud_.unit());
     const Weights weights = search_weights(normalised.weights);
     const bool flat = weights.product == 0.0 && normalised.weights.product > 0.0 && normalised.weights.pairs == 0.0 &&
@@ -266,7 +268,7 @@ Result<ExactFit> Fitter::exact(std::span<const Point> points, const ExactOptions
     // Where the axes' rounding to float counts, or the search has not ended, another frame may be better.
     if (!found.complete || fit.value - unrounded > kRoundingThatCounts * fit.value) {
         const auto tight = Fitter().fit(points, {options.criterion, Quality::tight});
-        if (!tight) return tl::unexpected(tight.error());
+        if (!tight) return tight.error();
         fit.box = better_of(fit.box, *tight, options.criterion, flat);
         fit.value = options.criterion(measure::intrinsic_volumes_of_box(fit.box));
     }

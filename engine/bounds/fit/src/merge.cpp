@@ -12,14 +12,14 @@ Result<Obb> merge(std::span<const Obb> boxes, const measure::Criterion& criterio
     return detail::recover([&]() -> Result<Obb> {
         if (boxes.empty()) return fail(ErrorCode::empty, kNoItem, "merge: no boxes");
         if (boxes.size() == 1) {
-            if (auto valid = validate(boxes[0], 0); !valid) return tl::unexpected(valid.error());
+            if (auto valid = validate(boxes[0], 0); !valid) return valid.error();
             return boxes[0];
         }
         Vector<glm::dvec3> points;
         points.reserve(8 * boxes.size());
         double largest = 0.0;
         for (std::size_t i = 0; i < boxes.size(); ++i) {
-            if (auto valid = validate(boxes[i], i); !valid) return tl::unexpected(valid.error());
+            if (auto valid = validate(boxes[i], i); !valid) return valid.error();
             for (const glm::dvec3& corner : corners(boxes[i])) {
                 if (!(std::max({std::abs(corner.x), std::abs(corner.y), std::abs(corner.z)}) <= kMaxCoordinate))
                     return fail(ErrorCode::out_of_range, i, {"merge: box ", i, " reaches beyond 1e30"});

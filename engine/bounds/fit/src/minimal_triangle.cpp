@@ -258,9 +258,9 @@ Triangle2 around_flat(std::span<const glm::dvec2> hull) {
 }
 
 Result<Triangle2> best_triangle(std::span<const glm::dvec2> points, PlanarCriterion criterion) {
-    if (auto valid = check_planar(points); !valid) return tl::unexpected(valid.error());
+    if (auto valid = check_planar(points); !valid) return valid.error();
     const auto found_hull = measure::convex_hull(points);
-    if (!found_hull) return tl::unexpected(found_hull.error());
+    if (!found_hull) return found_hull.error();
     const Vector<glm::dvec2>& hull = *found_hull;
     if (hull.size() < 3) return Triangle2{hull[0], hull.back(), hull.back()};
     Standing polygon;

@@ -78,16 +78,16 @@ Result<void> check_planar(std::span<const glm::dvec2> points) {
 
 Result<Rectangle> minimal_rectangle(std::span<const glm::dvec2> points, PlanarCriterion criterion) {
     return detail::recover([&]() -> Result<Rectangle> {
-        if (auto valid = check_planar(points); !valid) return tl::unexpected(valid.error());
+        if (auto valid = check_planar(points); !valid) return valid.error();
         const auto hull = measure::convex_hull(points);
-        if (!hull) return tl::unexpected(hull.error());
+        if (!hull) return hull.error();
         return minimal_rectangle_of_convex(*hull, criterion);
     });
 }
 
 Result<Rectangle> minimal_rectangle_of_convex(std::span<const glm::dvec2> polygon, PlanarCriterion criterion) {
     return detail::recover([&]() -> Result<Rectangle> {
-        if (auto valid = check_planar(polygon); !valid) return tl::unexpected(valid.error());
+        if (auto valid = check_planar(polygon); !valid) return valid.error();
         const bool by_area = criterion == PlanarCriterion::area;
         const Calipers best = minimal_rectangle(polygon, by_area ? 1.0 : 0.0, by_area ? 0.0 : 1.0);
         return around(polygon, best.direction);
@@ -96,9 +96,9 @@ Result<Rectangle> minimal_rectangle_of_convex(std::span<const glm::dvec2> polygo
 
 Result<Disc> minimal_disc(std::span<const glm::dvec2> points) {
     return detail::recover([&]() -> Result<Disc> {
-        if (auto valid = check_planar(points); !valid) return tl::unexpected(valid.error());
+        if (auto valid = check_planar(points); !valid) return valid.error();
         auto hull = measure::convex_hull(points);
-        if (!hull) return tl::unexpected(hull.error());
+        if (!hull) return hull.error();
         Vector<glm::dvec2>& corners = *hull;
         // A fixed shuffle suffices: the order around the hull is the bad case.
         std::uint64_t state = 0x9e3779b97f4a7c15u;

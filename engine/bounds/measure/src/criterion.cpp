@@ -24,7 +24,9 @@ Criterion for_partner(const IntrinsicVolumes& b) {
 }
 
 Result<Criterion> for_frustum(const Camera& camera) {
-    return intrinsic_volumes_of_frustum(camera).map([](const IntrinsicVolumes& b) { return for_partner(b); });
+    const auto of_frustum = intrinsic_volumes_of_frustum(camera);
+    if (!of_frustum) return of_frustum.error();
+    return for_partner(*of_frustum);
 }
 
 Result<void> validate(const Criterion& criterion) {

@@ -9,7 +9,7 @@ namespace crofton::measure {
 Result<IntrinsicVolumes> intrinsic_volumes_of_hull(std::span<const glm::dvec3> points) {
     return detail::recover([&]() -> Result<IntrinsicVolumes> {
         const auto hull = crofton::convex_hull(points);
-        if (!hull) return tl::unexpected(hull.error());
+        if (!hull) return hull.error();
         const auto corner = [&](std::size_t i) { return points[hull->vertices[i]]; };
         switch (hull->rank) {
             case 0:

@@ -35,9 +35,9 @@ Result<IntrinsicVolumes> intrinsic_volumes_of_frustum(const Camera& camera) {
     if (!std::isfinite(camera.far_distance))
         return fail(ErrorCode::invalid_argument, kNoItem, "frustum: its measures need a finite far distance");
     auto frustum = frustum_of(camera);
-    if (!frustum) return tl::unexpected(frustum.error());
+    if (!frustum) return frustum.error();
     const auto corners = frustum_corners(*frustum);
-    if (!corners) return tl::unexpected(corners.error());
+    if (!corners) return corners.error();
     // Faces as quads of corner numbers (see frustum_corners), in the order of the frustum's planes.
     constexpr std::array<std::array<unsigned, 4>, 6> faces = {
         {{0, 2, 6, 4}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 3, 7, 6}, {0, 1, 3, 2}, {4, 5, 7, 6}}};

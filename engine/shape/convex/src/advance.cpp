@@ -40,7 +40,7 @@ bool lie_on_both(const Triangle& corners, const ShapeAtPose& triangle, const Sha
     return q.x <= limit.x && q.y <= limit.y && q.z <= limit.z;
 }
 
-// Of a triangle and a sphere, a capsule or a box in closed form. False where that leaves a doubt.
+// Handles a triangle and a sphere, a capsule or a box in closed form. Returns false if that leaves a doubt.
 bool triangle_contact(const ShapeAtPose& triangle, const ShapeAtPose& other, Contact& contact) {
     const Kind kind = other.shape.kind();
     if (triangle.shape.kind() != Kind::triangle || triangle.shape.radius() > 0.0) return false;

@@ -137,7 +137,7 @@ void BoxClip::find_corners(int incident_face) {
     count_ = 4;
 }
 
-// Of boxes that are not turned, along the axis of the faces: the incident face itself is the shadow.
+// For boxes that are not rotated, along the axis of the faces: the incident face itself is the shadow.
 void BoxClip::find_straight_corners() {
     const glm::dvec3 &h = other_.shape.half_extents(), &at = seen_.center;
     const double out = coordinate(h, k_), hu = coordinate(h, u_), hv = coordinate(h, v_), x = coordinate(at, u_),

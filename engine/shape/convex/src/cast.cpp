@@ -94,9 +94,9 @@ Result<Impact> cast(const ShapeAtPose& a, const Motion& motion_a, const ShapeAtP
 
 Result<Impact> cast(const ShapeAtPose& a, const Motion& motion_a, const ShapeAtPose& b, const Motion& motion_b,
                     const CastOptions& options, const Beside& beside, PairCache* cache) {
-    if (Result<void> good = check(options); !good) return tl::unexpected(good.error());
-    if (Result<void> good = check(motion_a, options, 0); !good) return tl::unexpected(good.error());
-    if (Result<void> good = check(motion_b, options, 1); !good) return tl::unexpected(good.error());
+    if (Result<void> good = check(options); !good) return good.error();
+    if (Result<void> good = check(motion_a, options, 0); !good) return good.error();
+    if (Result<void> good = check(motion_b, options, 1); !good) return good.error();
     const bool a_turns = is_unbounded(a) && motion_a.spin != glm::dvec3(0.0);
     if (a_turns || (is_unbounded(b) && motion_b.spin != glm::dvec3(0.0)))
         return fail(ErrorCode::unsupported, a_turns ? 0 : 1, "cast: a half-space cannot turn; turn the other");

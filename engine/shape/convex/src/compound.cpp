@@ -33,7 +33,7 @@ Result<Compound> Compound::build(std::span<const CompoundChild> children) {
         std::uint64_t parts = 0;
         for (std::size_t i = 0; i < children.size(); ++i) {
             const CompoundChild& child = children[i];
-            if (Result<void> good = check(child, i); !good) return tl::unexpected(good.error());
+            if (Result<void> good = check(child, i); !good) return good.error();
             result.first_part_.push_back(static_cast<std::uint32_t>(parts));
             const Compound* const inner = child.shape.compound();
             parts += inner != nullptr ? inner->part_count() : 1;

@@ -85,7 +85,7 @@ bool comes_first(const Shape& a, const RigidTransform& pose_a, const Shape& b, c
     return true;
 }
 
-// Of the pair in the other order, seen from this one.
+// Turns the answer for the pair in the other order into one for this order.
 Nearest seen_from_other(Nearest nearest, const glm::dvec3& offset) {
     for (int i = 0; i < nearest.simplex.count; ++i) {
         Corner& corner = nearest.simplex.corner[i];

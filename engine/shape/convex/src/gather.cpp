@@ -26,7 +26,7 @@ bool are_opposite(const Clipped& clipped, const glm::dvec3& normal, double lengt
     return true;
 }
 
-// Of two sharp edges; round ones are gather_parallel_edges'.
+// Gathers the points of two sharp edges; gather_parallel_edges does round ones.
 void gather_segments(const Patch& a, const Patch& b, const glm::dvec3& normal, Clipped& clipped, Gatherer& gatherer) {
     if (!is_sharp(a) || !is_sharp(b) || !nearly_parallel(a, b)) return;
     clip_segments(a, b, clipped);

@@ -47,7 +47,7 @@ Result<void> check(const HeightFieldDescription& d) {
 }  // namespace
 
 Result<HeightField> HeightField::build(const HeightFieldDescription& description) {
-    if (Result<void> good = check(description); !good) return tl::unexpected(good.error());
+    if (Result<void> good = check(description); !good) return good.error();
     return detail::recover([&]() -> Result<HeightField> {
         HeightField field;
         field.columns_ = description.columns;

@@ -42,7 +42,7 @@ Result<CornerHull> hull_of_corners(const Points& points, std::size_t max_vertice
     CornerHull result{points, {}};
     for (;;) {
         Result<ExactHull> hull = quickhull(result.corners, max_vertices);
-        if (!hull) return tl::unexpected(hull.error());
+        if (!hull) return hull.error();
         result.hull = std::move(*hull);
         if (result.hull.missing > 0.0) return result;
         const Vector<std::uint32_t> kept = corners_of(result.hull, result.corners);
@@ -121,15 +121,15 @@ void Hull::find_planes() {
 }
 
 Result<Hull> Hull::build(std::span<const glm::vec3> points, const HullOptions& options) {
-    if (Result<void> good = check(points, options); !good) return tl::unexpected(good.error());
+    if (Result<void> good = check(points, options); !good) return good.error();
     return detail::recover([&]() -> Result<Hull> {
         Points all(points.begin(), points.end());
         Result<CornerHull> result = hull_of_corners(all, static_cast<std::size_t>(options.max_vertices));
-        if (!result) return tl::unexpected(result.error());
+        if (!result) return result.error();
         Hull hull;
         if (result->hull.missing > 0.0) {
             result = grown(*result, all, hull.max_overshoot_);
-            if (!result) return tl::unexpected(result.error());
+            if (!result) return result.error();
         }
         for (const glm::dvec3& p : result->corners) {
             hull.vertices_.emplace_back(p);

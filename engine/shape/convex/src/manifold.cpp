@@ -29,7 +29,7 @@ std::uint32_t number_of(const ContactPoint& p) {
     return 1U << 31 | feature(p.on_a) << 12 | feature(p.on_b);
 }
 
-// Of points in a circle.
+// Returns the area of points that are sorted around a circle.
 double area_of(const Manifold& m) {
     glm::dvec3 sum(0.0);
     for (int i = 1; i + 1 < m.count; ++i)

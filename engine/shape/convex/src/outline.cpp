@@ -80,7 +80,7 @@ void draw_hull(const Pen& pen, const Hull& hull, double round) {
         const glm::dvec3 out = round * hull.face_normal(face);
         for (std::size_t i = 0; i < loop.size(); ++i) {
             const std::uint16_t from = loop[i], to = loop[(i + 1) % loop.size()];
-            // Of two faces that share an edge one draws it, unless they are apart.
+            // Only one of two faces that share an edge draws it, unless they are apart.
             if (round > 0.0 || from < to) pen.line(at(from) + out, at(to) + out);
         }
     }

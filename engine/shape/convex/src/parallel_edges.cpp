@@ -103,7 +103,7 @@ bool gather_parallel_edges(const PatchOf& a, const PatchOf& b, const glm::dvec3&
                            double size, Clipped& clipped, Gatherer& gatherer, bool off_face) {
     const double flat = flat_sine(a, b), tolerance = 1e-9 * size, face = off_face ? -1.0 : flat;
     if (has_no_edge(a, normal, face) || has_no_edge(b, normal, face)) return false;
-    // Of all pairs the one most nearly parallel and across the normal.
+    // Chooses the pair that is most nearly parallel and across the normal.
     Edge of_a, of_b;
     double least = HUGE_VAL;
     for_each_edge(a, normal, origin, tolerance, [&](const Edge& e) {

@@ -98,7 +98,7 @@ class PartCaster {
             });
         };
         cast_all(box, true);
-        // Of parts that are in contact from the start, the deepest.
+        // Finds the deepest of the parts that are in contact from the start.
         if (hits_at(from)) cast_all(swept_box(pose, from, from), false);
     }
 

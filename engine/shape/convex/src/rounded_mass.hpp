@@ -5,10 +5,10 @@
 
 namespace crofton::convex {
 
-// Of a rounded box, hull or triangle; radius > 0. Closed forms, rounded.
+// Returns the mass of a rounded box, hull or triangle by closed forms. Requires radius > 0.
 [[nodiscard]] MassProperties mass_of_rounded_polytope(const Shape& shape);
 
-// Of a rounded cylinder or cone, likewise.
+// Does the same for a rounded cylinder or cone.
 [[nodiscard]] MassProperties mass_of_rounded_revolution(const Shape& shape);
 
 }  // namespace crofton::convex

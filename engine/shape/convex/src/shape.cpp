@@ -116,17 +116,17 @@ Shape ShapeMaker::mesh(const mesh::MeshTree& mesh, const Aabb& bounds, const glm
 }
 
 Result<Shape> Shape::sphere(double radius) {
-    if (Result<void> good = check_length(radius, "radius"); !good) return tl::unexpected(good.error());
+    if (Result<void> good = check_length(radius, "radius"); !good) return good.error();
     return ShapeMaker::sphere(radius);
 }
 
 Result<Shape> Shape::capsule(float half_height, float radius) {
-    if (Result<void> good = check_lengths(half_height, radius); !good) return tl::unexpected(good.error());
+    if (Result<void> good = check_lengths(half_height, radius); !good) return good.error();
     return ShapeMaker::capsule(static_cast<double>(half_height), static_cast<double>(radius));
 }
 
 Result<Shape> Shape::cylinder(float half_height, float radius) {
-    if (Result<void> good = check_lengths(half_height, radius); !good) return tl::unexpected(good.error());
+    if (Result<void> good = check_lengths(half_height, radius); !good) return good.error();
     Shape shape;
     shape.kind_ = Kind::cylinder;
     shape.half_ = {static_cast<double>(radius), static_cast<double>(half_height), static_cast<double>(radius)};
@@ -146,7 +146,7 @@ Result<Shape> Shape::box(const glm::vec3& half_extents) {
         if (Result<void> good =
                 check_length(static_cast<double>(half_extents[k]), "half extent", static_cast<std::uint64_t>(k));
             !good)
-            return tl::unexpected(good.error());
+            return good.error();
     return ShapeMaker::box(glm::dvec3(half_extents));
 }
 
@@ -157,7 +157,7 @@ Result<Shape> Shape::triangle(const glm::vec3& a, const glm::vec3& b, const glm:
         for (int k = 0; k < 3; ++k) {
             if (Result<void> good = check_length(static_cast<double>(std::abs(corners[i][k])), "triangle's corner", i);
                 !good)
-                return tl::unexpected(good.error());
+                return good.error();
             wide[i] = glm::dvec3(corners[i]);
         }
     return ShapeMaker::triangle({wide[0], wide[1], wide[2]});
@@ -195,7 +195,7 @@ Result<Shape> Shape::rounded(const Shape& core, double radius) {
         return fail(ErrorCode::unsupported, kNoItem, "shape: a half-space is not rounded; move its plane");
     if (!core.is_convex())
         return fail(ErrorCode::unsupported, kNoItem, "shape: surfaces and compounds are not rounded; round the parts");
-    if (Result<void> good = check_length(radius, "rounding"); !good) return tl::unexpected(good.error());
+    if (Result<void> good = check_length(radius, "rounding"); !good) return good.error();
     Shape shape = core;
     shape.radius_ += radius;
     grow(shape.bounds_, radius);

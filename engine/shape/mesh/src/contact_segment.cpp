@@ -80,7 +80,7 @@ class TrianglePlane {
         return cross(differences(t_[1], t_[0]), differences(t_[2], t_[0]));
     }
 
-    // Of the normal, or −1 where that is zero, exactly.
+    // The largest axis of the exact normal, or −1 if the normal is zero.
     [[nodiscard]] int largest_component() const {
         const auto n = exact_normal();
         int largest = -1;

@@ -24,7 +24,7 @@ glm::dmat3 frame_of(const Triangle& t) {
     const glm::dvec3 u = length2 > 0.0 ? longest / std::sqrt(length2) : glm::dvec3(1.0, 0.0, 0.0);
     const glm::dvec3 normal = glm::cross(t[1] - t[0], t[2] - t[0]);
     const double normal2 = glm::dot(normal, normal);
-    // Of slivers the cross product is mostly rounding.
+    // The cross product of a sliver is mostly rounding.
     const bool is_sliver = !(normal2 > 1e-16 * length2 * length2);
     const glm::dvec3 n = is_sliver ? unit_across(u) : normal / std::sqrt(normal2);
     return {u, n, glm::cross(u, n)};

@@ -36,7 +36,7 @@ Result<Bake> Bake::create(const Patches& patches, const SolverOptions& options, 
         return fail(ErrorCode::out_of_range, kNoItem, "radiosity: a bake has 1 to 2^32 runs");
     return crofton::detail::recover([&]() -> Result<Bake> {
         auto solver = Solver::create(patches, options);
-        if (!solver) return tl::unexpected(solver.error());
+        if (!solver) return solver.error();
         return Bake(std::move(*solver), runs);
     });
 }
@@ -98,7 +98,7 @@ Result<Vector<std::byte>> Bake::state() const {
 Result<void> Bake::add_state(std::span<const std::byte> state) {
     return crofton::detail::recover([&]() -> Result<void> {
         auto part = sums_from(state);
-        if (!part) return tl::unexpected(part.error());
+        if (!part) return part.error();
         if (part->fingerprint != sums_.fingerprint || part->patches != sums_.patches || part->runs != sums_.runs)
             return fail(ErrorCode::invalid_argument, kNoItem,
                         "state of a bake of light: of another scene, other options or another number of runs");

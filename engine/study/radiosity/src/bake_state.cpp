@@ -23,7 +23,7 @@ struct SumHeader {
 constexpr std::uint64_t kMostPatchesOfState = std::uint64_t{1} << 32;
 constexpr std::uint64_t kBytesOfPatch = 2 * sizeof(glm::dvec3) + 2 * sizeof(std::uint64_t);
 
-tl::unexpected<Error> damaged(const char* what) {
+Error damaged(const char* what) {
     return fail(ErrorCode::parse, kNoItem, {"state of a bake of light: ", what});
 }
 
@@ -186,7 +186,7 @@ Result<Vector<std::uint32_t>> missing_shards(std::span<const std::byte> state, s
     return crofton::detail::recover([&]() -> Result<Vector<std::uint32_t>> {
         if (count == 0) return fail(ErrorCode::invalid_argument, kNoItem, "a bake in 0 parts");
         const auto sums = sums_from(state);
-        if (!sums) return tl::unexpected(sums.error());
+        if (!sums) return sums.error();
         Vector<std::uint32_t> missing;
         for (std::uint32_t i = 0; i < count; ++i) {
             const ChainRange shard = chains_of({i, count}, sums->runs);

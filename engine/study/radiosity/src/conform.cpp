@@ -121,7 +121,7 @@ void points_on_side(const TriangleMesh& mesh, const PointGrid& grid, double cell
     }
     std::sort(result.begin(), result.end(),
               [](const OnSide& x, const OnSide& y) { return x.at != y.at ? x.at < y.at : x.vertex < y.vertex; });
-    // Of points on one step, keep the first.
+    // Keep the first of the points on one step.
     result.erase(std::unique(result.begin(), result.end(),
                              [](const OnSide& x, const OnSide& y) {
                                  return std::round(x.at * kSteps) == std::round(y.at * kSteps);
@@ -243,7 +243,7 @@ class Mender {
 
 Result<RefinedMesh> mend_t_junctions(const TriangleMesh& mesh, double tolerance) {
     return crofton::detail::recover([&]() -> Result<RefinedMesh> {
-        if (auto valid = validate(mesh); !valid) return tl::unexpected(valid.error());
+        if (auto valid = validate(mesh); !valid) return valid.error();
         if (!(tolerance >= 0.0))
             return fail(ErrorCode::out_of_range, kNoItem, "mending: the tolerance must not be negative");
         if (mesh.indices.empty()) return RefinedMesh{mesh, {}};

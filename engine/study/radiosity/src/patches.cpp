@@ -39,12 +39,12 @@ Result<void> check_materials(std::span<const Material> materials) {
 Result<Patches> make_patches(TriangleMesh mesh, std::span<const std::uint32_t> patch_of_triangle,
                              std::span<const Material> materials) {
     return crofton::detail::recover([&]() -> Result<Patches> {
-        if (auto valid = validate(mesh); !valid) return tl::unexpected(valid.error());
+        if (auto valid = validate(mesh); !valid) return valid.error();
         if (mesh.indices.empty()) return fail(ErrorCode::empty, kNoItem, "patches: there are no triangles");
         if (patch_of_triangle.size() != mesh.triangle_count())
             return fail(ErrorCode::invalid_argument, patch_of_triangle.size(),
                         "patches: not one patch number per triangle");
-        if (auto valid = check_materials(materials); !valid) return tl::unexpected(valid.error());
+        if (auto valid = check_materials(materials); !valid) return valid.error();
         Patches patches;
         patches.areas.assign(materials.size(), 0.0);
         patches.triangle_areas.resize(patch_of_triangle.size());

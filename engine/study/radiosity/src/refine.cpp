@@ -120,7 +120,7 @@ RefinedMesh detail::cut_edges(const TriangleMesh& mesh, CutEdge is_cut) {
 
 Result<RefinedMesh> refine(const TriangleMesh& mesh, EdgeLength longest_edge, std::size_t most_triangles) {
     return crofton::detail::recover([&]() -> Result<RefinedMesh> {
-        if (auto valid = validate(mesh); !valid) return tl::unexpected(valid.error());
+        if (auto valid = validate(mesh); !valid) return valid.error();
         const auto is_long = [&](const glm::vec3& p, const glm::vec3& q) {
             const double longest = longest_edge(middle(p, q));
             return squared_length(p, q) > longest * longest;

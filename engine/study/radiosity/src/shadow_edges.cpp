@@ -35,7 +35,7 @@ class SunRays {
   public:
     // `scene` must live as long.
     static Result<SunRays> create(const lines::LineTracer& scene, const TriangleMesh& mesh, const glm::dvec3& to_sun) {
-        if (auto valid = validate(mesh); !valid) return tl::unexpected(valid.error());
+        if (auto valid = validate(mesh); !valid) return valid.error();
         const double length = glm::length(to_sun);
         if (!(length > 0.0) || !std::isfinite(length))
             return fail(ErrorCode::out_of_range, kNoItem, "the direction to the sun is zero, too long or not finite");
@@ -121,7 +121,7 @@ Result<RefinedMesh> refine_at_shadows(const lines::LineTracer& scene, const Tria
                                       const glm::dvec3& to_sun, std::uint32_t halvings, std::size_t most_triangles) {
     return crofton::detail::recover([&]() -> Result<RefinedMesh> {
         const auto rays = SunRays::create(scene, mesh, to_sun);
-        if (!rays) return tl::unexpected(rays.error());
+        if (!rays) return rays.error();
         RefinedMesh result{mesh, {}};
         Vector<std::uint32_t> newest;  // triangles that were not looked at as they are
         for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) {
@@ -159,7 +159,7 @@ Result<RefinedMesh> refine_at_shadows(const lines::LineTracer& scene, const Tria
 Result<RefinedMesh> refine_at_shadows(const TriangleMesh& mesh, const glm::dvec3& to_sun, std::uint32_t halvings,
                                       std::size_t most_triangles) {
     const auto scene = lines::LineTracer::build(mesh);
-    if (!scene) return tl::unexpected(scene.error());
+    if (!scene) return scene.error();
     return refine_at_shadows(*scene, mesh, to_sun, halvings, most_triangles);
 }
 
@@ -167,7 +167,7 @@ Result<Vector<std::uint32_t>> sunlit_triangles(const lines::LineTracer& scene, c
                                                const glm::dvec3& to_sun) {
     return crofton::detail::recover([&]() -> Result<Vector<std::uint32_t>> {
         const auto rays = SunRays::create(scene, mesh, to_sun);
-        if (!rays) return tl::unexpected(rays.error());
+        if (!rays) return rays.error();
         Vector<std::uint32_t> lit(mesh.triangle_count(), 0), all;
         for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) all.push_back(t);
         rays->look(mesh, all, 1, [&](std::uint32_t t, std::size_t seen) { lit[t] = static_cast<std::uint32_t>(seen); });
@@ -177,7 +177,7 @@ Result<Vector<std::uint32_t>> sunlit_triangles(const lines::LineTracer& scene, c
 
 Result<Vector<std::uint32_t>> sunlit_triangles(const TriangleMesh& mesh, const glm::dvec3& to_sun) {
     const auto scene = lines::LineTracer::build(mesh);
-    if (!scene) return tl::unexpected(scene.error());
+    if (!scene) return scene.error();
     return sunlit_triangles(*scene, mesh, to_sun);
 }
 

@@ -100,16 +100,16 @@ std::uint32_t Solver::triangle_of(std::size_t patch, double u) const {
 
 Result<Solver> Solver::create(const Patches& patches, const SolverOptions& options) {
     return crofton::detail::recover([&]() -> Result<Solver> {
-        if (auto valid = check(options); !valid) return tl::unexpected(valid.error());
+        if (auto valid = check(options); !valid) return valid.error();
         bool light = total(glm::dvec3(options.outside.sky) + glm::dvec3(options.outside.sun)) > 0.0;
         for (const Material& m : patches.materials) light = light || total(glm::dvec3(m.emission)) > 0.0;
         if (!light)
             return fail(ErrorCode::empty, kNoItem,
                         "radiosity: nothing gives light; give a patch emission, or a sky or sun");
         auto tracer = lines::LineTracer::build(patches.mesh);
-        if (!tracer) return tl::unexpected(tracer.error());
+        if (!tracer) return tracer.error();
         auto bundles = lines::BundleTracer::build(patches.mesh);
-        if (!bundles) return tl::unexpected(bundles.error());
+        if (!bundles) return bundles.error();
         return Solver(patches, options, std::move(*tracer), std::move(*bundles));
     });
 }

@@ -187,12 +187,12 @@ class BinaryTreeBuilder {
 
 Result<BinaryTree> BinaryTree::build(std::span<const Obb> boxes, const BinaryTreeOptions& options) {
     if (boxes.size() > kMaxItems) return fail(ErrorCode::out_of_range, kMaxItems, "visit tree: more than 2^30 boxes");
-    if (auto valid = measure::validate(options.criterion); !valid) return tl::unexpected(valid.error());
-    if (auto valid = measure::validate(options.split_criterion); !valid) return tl::unexpected(valid.error());
+    if (auto valid = measure::validate(options.criterion); !valid) return valid.error();
+    if (auto valid = measure::validate(options.split_criterion); !valid) return valid.error();
     if (options.split == Split::sampled && options.queries == nullptr)
         return fail(ErrorCode::invalid_argument, kNoItem, "visit tree: to split by sampled queries it needs some");
     for (std::size_t i = 0; i < boxes.size(); ++i)
-        if (auto valid = crofton::validate(boxes[i], i); !valid) return tl::unexpected(valid.error());
+        if (auto valid = crofton::validate(boxes[i], i); !valid) return valid.error();
     BinaryTree tree;
     BinaryTreeBuilder(boxes, options, tree).run();
     return tree;

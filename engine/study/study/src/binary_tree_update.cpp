@@ -61,7 +61,7 @@ std::uint32_t BinaryTree::best_sibling(const Aabb& box) const {
 }
 
 Result<ItemId> BinaryTree::insert(const Obb& box) {
-    if (auto valid = crofton::validate(box); !valid) return tl::unexpected(valid.error());
+    if (auto valid = crofton::validate(box); !valid) return valid.error();
     ItemId item;
     if (free_items_.empty()) {
         item = static_cast<ItemId>(leaf_of_.size());

@@ -75,15 +75,15 @@ Result<BoundGivenAncestors> bound_given_ancestors(std::span<const glm::dvec3> po
                                                   const study::QuerySample& queries,
                                                   const measure::Criterion& criterion,
                                                   const BoundGivenAncestorsOptions& options) {
-    if (auto valid = measure::validate(criterion); !valid) return tl::unexpected(valid.error());
+    if (auto valid = measure::validate(criterion); !valid) return valid.error();
     if (!(options.tolerance >= 0.0 && options.tolerance < 1.0))
         return fail(ErrorCode::invalid_argument, kNoItem, "bound given ancestors: `tolerance` must lie in [0, 1)");
     for (std::size_t i = 0; i < ancestors.size(); ++i)
-        if (auto valid = validate(ancestors[i], i); !valid) return tl::unexpected(valid.error());
+        if (auto valid = validate(ancestors[i], i); !valid) return valid.error();
     const auto plain = fit::fit_obb(points, {.criterion = criterion});
-    if (!plain) return tl::unexpected(plain.error());
+    if (!plain) return plain.error();
     const auto hull = convex_hull(points);
-    if (!hull) return tl::unexpected(hull.error());
+    if (!hull) return hull.error();
     Vector<std::uint32_t> candidates = queries.all();
     for (const Obb& ancestor : ancestors) candidates = queries.hitting(candidates, ancestor);
     BoundGivenAncestors result;

@@ -14,13 +14,13 @@ Result<BoxGivenAncestors> box_given_ancestors(std::span<const glm::dvec3> points
                                               const BoxGivenAncestorsOptions& options) {
     if (!(options.tolerance > 0.0 && options.tolerance < 1.0))
         return fail(ErrorCode::invalid_argument, kNoItem, "box given ancestors: `tolerance` must lie in (0, 1)");
-    if (auto valid = validate_bodies(ancestors); !valid) return tl::unexpected(valid.error());
+    if (auto valid = validate_bodies(ancestors); !valid) return valid.error();
     const auto plain = fit::fit_obb(points, {.criterion = measure::minimal_perimeter()});
-    if (!plain) return tl::unexpected(plain.error());
+    if (!plain) return plain.error();
     const auto hull = convex_hull(points);
-    if (!hull) return tl::unexpected(hull.error());
+    if (!hull) return hull.error();
     const auto least = fit::minimal_sphere(points);
-    if (!least) return tl::unexpected(least.error());
+    if (!least) return least.error();
     if (!(least->radius > 0.0))
         return fail(ErrorCode::degenerate, kNoItem, "box given ancestors: the object is a point");
     const AncestorDirections directions(ancestors);
@@ -36,7 +36,7 @@ Result<BoxGivenAncestors> box_given_ancestors(std::span<const glm::dvec3> points
     search.run(options, best, result);
     // Axes and extents are rounded to floats, by 1e-7 of the box.
     const auto box = fit::fit_oriented(points, glm::mat3(best));
-    if (!box) return tl::unexpected(box.error());
+    if (!box) return box.error();
     result.box = *box;
     return result;
 }

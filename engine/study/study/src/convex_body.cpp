@@ -23,9 +23,9 @@ ConvexBody ConvexBody::box(const Obb& box) {
 
 Result<ConvexBody> ConvexBody::frustum(const Camera& camera) {
     const auto frustum = frustum_of(camera);
-    if (!frustum) return tl::unexpected(frustum.error());
+    if (!frustum) return frustum.error();
     const auto c = frustum_corners(*frustum);
-    if (!c) return tl::unexpected(c.error());
+    if (!c) return c.error();
     ConvexBody body;
     for (const glm::dvec3& corner : *c) body.points.push_back(frustum->origin + corner);
     return body;

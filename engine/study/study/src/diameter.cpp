@@ -41,15 +41,16 @@ Result<Diameter<Point>> by_larger_points(std::span<const Point> points, double l
     };
     Vector<Point> larger;
     for (const Point& p : points) larger.push_back(scaled(p, -exponent));
-    return find(std::span<const Point>(larger)).map([&](const Diameter<Point>& d) {
-        return Diameter<Point>{std::ldexp(d.length, exponent), scaled(d.from, exponent), scaled(d.to, exponent)};
-    });
+    const Result<Diameter<Point>> found = find(std::span<const Point>(larger));
+    if (!found) return found.error();
+    return Diameter<Point>{std::ldexp(found->length, exponent), scaled(found->from, exponent),
+                           scaled(found->to, exponent)};
 }
 
 // By rotating calipers around the hull.
 Result<Diameter<glm::dvec2>> planar_diameter(std::span<const glm::dvec2> points) {
     const auto hull = measure::convex_hull(points);
-    if (!hull) return tl::unexpected(hull.error());
+    if (!hull) return hull.error();
     const Vector<glm::dvec2>& p = *hull;
     Diameter<glm::dvec2> best{0.0, p[0], p[0]};
     const auto at = [&](std::size_t i) -> const glm::dvec2& { return p[i < p.size() ? i : i % p.size()]; };
@@ -72,7 +73,7 @@ Result<Diameter<glm::dvec2>> planar_diameter(std::span<const glm::dvec2> points)
 // Over pairs of the hull's corners.
 Result<Diameter<glm::dvec3>> spatial_diameter(std::span<const glm::dvec3> points) {
     const auto hull = convex_hull(points);
-    if (!hull) return tl::unexpected(hull.error());
+    if (!hull) return hull.error();
     Aabb box;
     for (const std::uint32_t v : hull->vertices) box.include(points[v]);
     const glm::dvec3 middle = box.min + 0.5 * (box.max - box.min);

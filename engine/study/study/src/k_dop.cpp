@@ -116,16 +116,16 @@ Result<KDop> k_dop_around(std::span<const glm::dvec3> points, std::span<const gl
 
 Result<BestKDop> best_k_dop(std::span<const glm::dvec3> points, std::span<const glm::dvec3> directions,
                             const measure::Criterion& criterion, const BestKDopOptions& options) {
-    if (auto valid = measure::validate(criterion); !valid) return tl::unexpected(valid.error());
+    if (auto valid = measure::validate(criterion); !valid) return valid.error();
     if (!(options.tolerance > 0.0 && options.tolerance < 1.0))
         return fail(ErrorCode::invalid_argument, kNoItem, "k-DOP: `tolerance` must lie in (0, 1)");
     const auto hull = convex_hull(points);
-    if (!hull) return tl::unexpected(hull.error());
+    if (!hull) return hull.error();
     if (hull->rank < 3) return fail(ErrorCode::degenerate, kNoItem, "k-DOP: the points lie in a plane");
     Vector<glm::dvec3> corners;
     for (const std::uint32_t v : hull->vertices) corners.push_back(points[v]);
     const auto own = measure::intrinsic_volumes_of_hull(corners);
-    if (!own) return tl::unexpected(own.error());
+    if (!own) return own.error();
     BestKDop best;
     best.value = kInfinity;
     const auto value_at = [&](const glm::dmat3& rotation, KDop& dop) {
@@ -138,7 +138,7 @@ Result<BestKDop> best_k_dop(std::span<const glm::dvec3> points, std::span<const 
         dop = std::move(*around);
         return criterion(*volumes);
     };
-    if (auto checked = k_dop_around(corners, directions); !checked) return tl::unexpected(checked.error());
+    if (auto checked = k_dop_around(corners, directions); !checked) return checked.error();
     KDop dop;
     constexpr int kStarts = 6;
     for (int start = 0; start < kStarts; ++start) {

@@ -182,7 +182,7 @@ Vector<LightField::Arrival> LightField::arrivals(const glm::dvec3& eye, double a
 Result<LightField::Drawn> LightField::draw(const Camera& camera, std::uint32_t width, std::uint32_t height,
                                            const DrawOptions& options) const {
     const auto rays = PictureRays::of(camera, width, height);
-    if (!rays) return tl::unexpected(rays.error());
+    if (!rays) return rays.error();
     if (bundles_.empty()) return fail(ErrorCode::empty, kNoItem, "light field: nothing was recorded");
     if (!(options.samples >= 1e-3 && options.samples <= 1e3) || options.blend < 1 || options.blend > options.hiders ||
         options.hiders > 64 || !(options.depth_step > 0.0))
@@ -249,7 +249,7 @@ Result<LightPicture> direct_picture(const lines::LineTracer& scene, LightAt ligh
                                     const Camera& camera, std::uint32_t width, std::uint32_t height,
                                     Executor& executor) {
     const auto rays = PictureRays::of(camera, width, height);
-    if (!rays) return tl::unexpected(rays.error());
+    if (!rays) return rays.error();
     const std::size_t pixels = std::size_t{width} * height;
     LightPicture picture{width, height, Vector<glm::vec3>(pixels), Vector<double>(pixels, kInfinity)};
     executor.parallel_for(height, 8, [&](std::size_t begin, std::size_t end, unsigned) {

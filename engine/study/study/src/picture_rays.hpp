@@ -17,7 +17,7 @@ namespace crofton::study {
 class PictureRays {
   public:
     [[nodiscard]] static Result<PictureRays> of(const Camera& camera, std::uint32_t width, std::uint32_t height) {
-        if (auto valid = validate(camera); !valid) return tl::unexpected(valid.error());
+        if (auto valid = validate(camera); !valid) return valid.error();
         if (camera.projection != Projection::perspective)
             return fail(ErrorCode::unsupported, kNoItem, "picture: the camera is orthographic");
         if (width == 0 || height == 0 || std::uint64_t{width} * height > std::uint64_t{1} << 24)

@@ -42,7 +42,7 @@ double rounding_of_integrals(const PlanarSupport& a, const PlanarSupport& b) {
 Result<Problem> prepare(std::span<const glm::dvec2> object, const PlanarSupport& ancestors,
                         const BoundOptions& options) {
     auto hull = measure::convex_hull(object);
-    if (!hull) return tl::unexpected(hull.error());
+    if (!hull) return hull.error();
     Problem problem;
     problem.corners = std::move(*hull);
     for (const glm::dvec2& p : problem.corners) {
@@ -288,7 +288,7 @@ void enclose(std::span<const glm::dvec2> hull, Rectangle& rectangle) {
 Result<OptimalBound<Disc>> optimal_disc(std::span<const glm::dvec2> object, const PlanarSupport& ancestors,
                                         const BoundOptions& options) {
     const auto problem = prepare(object, ancestors, options);
-    if (!problem) return tl::unexpected(problem.error());
+    if (!problem) return problem.error();
     OptimalBound<Disc> result;
     if (problem->hull.size() == 1)
         result = {{problem->hull[0], 0.0}, 0.0, 0.0, 0};
@@ -300,7 +300,7 @@ Result<OptimalBound<Disc>> optimal_disc(std::span<const glm::dvec2> object, cons
 
 Result<OptimalBound<Rectangle>> optimal_box(std::span<const glm::dvec2> object, const PlanarSupport& ancestors) {
     const auto problem = prepare(object, ancestors, {});
-    if (!problem) return tl::unexpected(problem.error());
+    if (!problem) return problem.error();
     OptimalBound<Rectangle> result;
     result.bound = rectangle_at(problem->hull, 0.0, support_corners(problem->hull, 0.0));
     result.measure = result.lower_bound = integral_of_min(ancestors, PlanarSupport(result.bound));
@@ -312,7 +312,7 @@ Result<OptimalBound<Rectangle>> optimal_box(std::span<const glm::dvec2> object, 
 Result<OptimalBound<Rectangle>> optimal_rectangle(std::span<const glm::dvec2> object, const PlanarSupport& ancestors,
                                                   const BoundOptions& options) {
     const auto problem = prepare(object, ancestors, options);
-    if (!problem) return tl::unexpected(problem.error());
+    if (!problem) return problem.error();
     auto result = RectangleSearch(*problem, ancestors).run();
     enclose(problem->corners, result.bound);
     return result;

@@ -33,7 +33,7 @@ PlanarSupport::PlanarSupport(const Rectangle& rectangle) {
 
 Result<PlanarSupport> PlanarSupport::of_hull(std::span<const glm::dvec2> points) {
     const auto hull = measure::convex_hull(points);
-    if (!hull) return tl::unexpected(hull.error());
+    if (!hull) return hull.error();
     return of_convex_polygon(*hull);
 }
 

@@ -142,9 +142,9 @@ Result<DirectedFit> fit_box_for(std::span<const glm::dvec3> points, const QueryD
                                 QueryKind kind) {
     const auto criterion = kind == QueryKind::planes ? measure::minimal_perimeter() : measure::minimal_area();
     const auto plain = fit::fit_obb(points, {.criterion = criterion});
-    if (!plain) return tl::unexpected(plain.error());
+    if (!plain) return plain.error();
     const auto hull = convex_hull(points);
-    if (!hull) return tl::unexpected(hull.error());
+    if (!hull) return hull.error();
     ConvexBody body;
     for (const std::uint32_t v : hull->vertices) body.points.push_back(points[v]);
     const auto value_of = [&](const Obb& box) {

@@ -78,7 +78,7 @@ Result<QuerySample> QuerySample::frusta(const Camera& camera, const Sphere& regi
                                         std::uint64_t seed) {
     auto sample = make(Kind::frustum, region, count);
     if (!sample) return sample;
-    if (auto finite = measure::intrinsic_volumes_of_frustum(camera); !finite) return tl::unexpected(finite.error());
+    if (auto finite = measure::intrinsic_volumes_of_frustum(camera); !finite) return finite.error();
     const Frustum frustum = *frustum_of(camera);
     sample->corners_ = *frustum_corners(frustum);
     const auto& c = sample->corners_;

@@ -132,15 +132,15 @@ class Shadows {
 }  // namespace
 
 Result<Enclosure> measure_of_lines_hitting_all(std::span<const ConvexBody> bodies, const QuadratureOptions& options) {
-    if (auto valid = validate_bodies(bodies); !valid) return tl::unexpected(valid.error());
+    if (auto valid = validate_bodies(bodies); !valid) return valid.error();
     return integrate_directions(options, Shadows(bodies));
 }
 
 Result<Enclosure> cauchy_area(const ConvexBody& body, const QuadratureOptions& options) {
-    return measure_of_lines_hitting_all({&body, 1}, options).map([](Enclosure e) {
-        const double scale = 2.0 / pi;
-        return Enclosure{scale * e.value, scale * e.error, e.cells};
-    });
+    const auto lines = measure_of_lines_hitting_all({&body, 1}, options);
+    if (!lines) return lines.error();
+    const double scale = 2.0 / pi;
+    return Enclosure{scale * lines->value, scale * lines->error, lines->cells};
 }
 
 }  // namespace crofton::study

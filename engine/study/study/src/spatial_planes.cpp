@@ -51,7 +51,7 @@ LinearBounds bound_least_support(std::span<const ConvexBody> bodies, const Direc
 }  // namespace
 
 Result<Enclosure> measure_of_planes_hitting_all(std::span<const ConvexBody> bodies, const QuadratureOptions& options) {
-    if (auto valid = validate_bodies(bodies); !valid) return tl::unexpected(valid.error());
+    if (auto valid = validate_bodies(bodies); !valid) return valid.error();
     return integrate_directions(options, [&](const DirectionTriangle& corners) {
         const auto weights = linear_weights(corners);
         const LinearBounds front = bound_least_support(bodies, corners, 1.0),

@@ -122,9 +122,9 @@ Result<SphereGivenAncestors> sphere_given_ancestors(std::span<const glm::dvec3> 
     if (!(options.largest >= 1.0 && options.largest <= 1e6) || !(options.tolerance > 0.0 && options.tolerance < 1.0))
         return fail(ErrorCode::invalid_argument, kNoItem,
                     "sphere given ancestors: `largest` must lie in [1, 1e6], `tolerance` in (0, 1)");
-    if (auto valid = validate_bodies(ancestors); !valid) return tl::unexpected(valid.error());
+    if (auto valid = validate_bodies(ancestors); !valid) return valid.error();
     const auto least = fit::minimal_sphere(points);
-    if (!least) return tl::unexpected(least.error());
+    if (!least) return least.error();
     const AncestorDirections directions(ancestors);
     if (!directions.contain(points))
         return fail(ErrorCode::invalid_argument, kNoItem,

@@ -7,7 +7,7 @@ namespace crofton::depth {
 
 void find_neighbors(const std::uint8_t* corners, std::uint32_t triangle_count, std::uint8_t* neighbors) {
     const auto next_corner = [](std::uint32_t h) { return h % 3 == 2 ? h - 2 : h + 1; };
-    // Of each pair of vertices: how many edges join them, and the first two.
+    // For each pair of vertices: how many edges join them, and the first two.
     struct Edges {
         std::uint8_t count, first, second;
     };

@@ -118,7 +118,7 @@ class PatchBuilder {
 
 Result<ClusteredMesh> ClusteredMesh::cut(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices,
                                          const ClusterOptions& options) {
-    if (auto checked = check(positions, indices, options); !checked) return tl::unexpected(checked.error());
+    if (auto checked = check(positions, indices, options); !checked) return checked.error();
     const std::uint32_t most =
         options.max_triangles != 0 ? options.max_triangles : cluster_size_for(indices.size() / 3);
     ClusteredMesh mesh;

@@ -68,12 +68,12 @@ struct DepthCuller::State {
     Vector<std::uint32_t> ends;
     Vector<std::uint8_t> looked_into;  // by object
     DepthStatistics statistics;
-    // Of find_visible(), for receivers of shadows.
+    // Kept from find_visible(), for receivers of shadows.
     bool has_picture = false;
     std::size_t drawn = 0;    // objects that were given
     Vector<SeenObject> seen;  // those that are listed
 
-    // Of objects and a view that are checked.
+    // Requires checked objects and a checked view.
     std::span<const VisibleCluster> find(std::span<const DepthObject> objects, const PictureView& view,
                                          std::span<const float> floors, Executor& executor) {
         const std::uint64_t limit = view.work_limit != 0 ? view.work_limit : ~std::uint64_t{0};
@@ -218,7 +218,7 @@ DepthCuller& DepthCuller::operator=(DepthCuller&&) noexcept = default;
 
 Result<std::span<const VisibleCluster>> DepthCuller::find_visible(std::span<const DepthObject> objects,
                                                                   const PictureView& view, Executor& executor) {
-    if (auto checked = check(objects, view); !checked) return tl::unexpected(checked.error());
+    if (auto checked = check(objects, view); !checked) return checked.error();
     return state_->find(objects, view, {}, executor);
 }
 
@@ -229,8 +229,8 @@ Result<std::span<const VisibleCluster>> DepthCuller::find_casters(std::span<cons
         return fail(ErrorCode::invalid_argument, kNoItem,
                     "depth: casters need another culler, whose last answer is what the camera sees");
     const State& seen = *receivers.seen->state_;
-    if (auto checked = check(objects, map); !checked) return tl::unexpected(checked.error());
-    if (auto checked = check(receivers, seen.drawn, seen.seen, map); !checked) return tl::unexpected(checked.error());
+    if (auto checked = check(objects, map); !checked) return checked.error();
+    if (auto checked = check(receivers, seen.drawn, seen.seen, map); !checked) return checked.error();
     const auto strips = seen.samples == 1 ? seen.walked() : std::span<const StripWalk>();
     state_->receivers.find({seen.frame.picture(), seen.seen, seen.sorted, strips}, receivers, map);
     if (state_->receivers.is_empty()) objects = {};

@@ -35,7 +35,7 @@ std::uint64_t size_for(const StoredHeader& header) {
            std::uint64_t{header.blocks} * sizeof(ClusteredMesh::Block);
 }
 
-tl::unexpected<Error> damaged(const char* what, std::uint64_t cluster = kNoItem) {
+Error damaged(const char* what, std::uint64_t cluster = kNoItem) {
     return fail(ErrorCode::parse, cluster, {"clusters: ", what});
 }
 
@@ -168,9 +168,9 @@ Result<ClusteredMesh> ClusteredMesh::deserialise(std::span<const std::byte> byte
     StoredMesh::take(bytes, header.coordinates, mesh.coordinates_);
     StoredMesh::take(bytes, header.blocks, mesh.blocks_);
     mesh.patches_.reserve(header.clusters);
-    if (auto placed = StoredMesh::place_patches(mesh, vertex_counts); !placed) return tl::unexpected(placed.error());
-    if (auto checked = StoredMesh::check_order(mesh.order_); !checked) return tl::unexpected(checked.error());
-    if (auto checked = StoredMesh::check_blocks(mesh); !checked) return tl::unexpected(checked.error());
+    if (auto placed = StoredMesh::place_patches(mesh, vertex_counts); !placed) return placed.error();
+    if (auto checked = StoredMesh::check_order(mesh.order_); !checked) return checked.error();
+    if (auto checked = StoredMesh::check_blocks(mesh); !checked) return checked.error();
     if (!StoredMesh::are_within(mesh.coordinates_, mesh.largest_)) return damaged("a coordinate is beyond the mesh's");
     mesh.identity_ = next_identity();
     return mesh;

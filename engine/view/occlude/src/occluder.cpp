@@ -11,7 +11,7 @@ namespace crofton::occlude {
 namespace {
 
 Result<Occluder> occluder_of(const Obb& box, std::uint64_t item) {
-    if (auto valid = validate(box, item); !valid) return tl::unexpected(valid.error());
+    if (auto valid = validate(box, item); !valid) return valid.error();
     for (int k = 0; k < 3; ++k)
         if (box.half_extents[k] == 0.0f)
             return fail(ErrorCode::degenerate, item, "occluder: the box is flat; give a polygon to add_surface");
@@ -21,7 +21,7 @@ Result<Occluder> occluder_of(const Obb& box, std::uint64_t item) {
 }
 
 Result<Occluder> occluder_of(ShapeId shape, const Transform& transform, std::uint64_t item) {
-    if (auto valid = validate(transform, item); !valid) return tl::unexpected(valid.error());
+    if (auto valid = validate(transform, item); !valid) return valid.error();
     const int turn = sign_of_determinant(transform.linear);
     if (turn == 0)
         return fail(ErrorCode::degenerate, item, "occluder: the transform flattens it; choose another scale");
@@ -40,7 +40,7 @@ OccluderSet::OccluderSet(OccluderSet&&) noexcept = default;
 OccluderSet& OccluderSet::operator=(OccluderSet&&) noexcept = default;
 
 Result<ShapeId> OccluderSet::Data::add(Result<Shape> shape) {
-    if (!shape) return tl::unexpected(std::move(shape.error()));
+    if (!shape) return std::move(shape.error());
     if (!free_shapes.empty()) {
         const ShapeId id = free_shapes.back();
         free_shapes.pop_back();
@@ -54,7 +54,7 @@ Result<ShapeId> OccluderSet::Data::add(Result<Shape> shape) {
 }
 
 Result<OccluderId> OccluderSet::Data::add(Result<Occluder> occluder) {
-    if (!occluder) return tl::unexpected(std::move(occluder.error()));
+    if (!occluder) return std::move(occluder.error());
     if (occluder->shape != kNone) ++shape_uses[occluder->shape];
     if (first_free != kNone) {
         const OccluderId id = first_free;
@@ -67,7 +67,7 @@ Result<OccluderId> OccluderSet::Data::add(Result<Occluder> occluder) {
 }
 
 Result<void> OccluderSet::Data::replace(OccluderId id, Result<Occluder> occluder) {
-    if (!occluder) return tl::unexpected(std::move(occluder.error()));
+    if (!occluder) return std::move(occluder.error());
     occluder->enabled = occluders[id].enabled;
     occluders[id] = *occluder;
     return {};
@@ -104,7 +104,7 @@ Result<OccluderId> OccluderSet::place(const Obb& box) {
     return data_->add(occluder_of(box, data_->next_id()));
 }
 Result<OccluderId> OccluderSet::place(ShapeId shape, const Transform& transform) {
-    if (auto known = data_->check_shape(shape); !known) return tl::unexpected(known.error());
+    if (auto known = data_->check_shape(shape); !known) return known.error();
     return data_->add(occluder_of(shape, transform, data_->next_id()));
 }
 

@@ -146,7 +146,7 @@ Result<void> validate(const BufferSize& size) {
 }
 
 Result<OcclusionBuffer> OcclusionBuffer::create(const BufferSize& size) {
-    if (auto good = validate(size); !good) return tl::unexpected(good.error());
+    if (auto good = validate(size); !good) return good.error();
     OcclusionBuffer buffer;
     Data& data = *buffer.data_;
     data.size = size;

@@ -63,7 +63,7 @@ double near_radius_of(const OcclusionView& view) {
 
 Result<OcclusionView> occlusion_view_of(const Camera& camera) {
     auto frustum = frustum_of(camera);
-    if (!frustum) return tl::unexpected(frustum.error());
+    if (!frustum) return frustum.error();
     const glm::dmat3 rotation = world_to_view_rotation(camera);
     const glm::dvec3 right(rotation[0][0], rotation[1][0], rotation[2][0]);
     const glm::dvec3 up(rotation[0][1], rotation[1][1], rotation[2][1]);
@@ -90,7 +90,7 @@ Result<OcclusionView> occlusion_view_of(const Camera& camera) {
 
 Result<OcclusionView> occlusion_view_of(const glm::dmat4& to_clip, DepthRange depth, const glm::dvec3& origin) {
     auto frustum = frustum_of(to_clip, depth, origin);
-    if (!frustum) return tl::unexpected(frustum.error());
+    if (!frustum) return frustum.error();
     OcclusionView view;
     view.frustum = *frustum;
     const Row x = row_of(to_clip, 0), y = row_of(to_clip, 1), w = row_of(to_clip, 3);

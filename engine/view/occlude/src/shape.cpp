@@ -256,7 +256,7 @@ void find_outline(Shape& shape) {
 }
 
 [[nodiscard]] Result<Shape> welded_shape(const TriangleMesh& mesh, Sides sides, Vector<std::uint32_t>& source) {
-    if (auto valid = validate(mesh); !valid) return tl::unexpected(valid.error());
+    if (auto valid = validate(mesh); !valid) return valid.error();
     Shape shape;
     shape.sides = sides;
     weld(mesh.positions, mesh.indices, shape, source);
@@ -271,7 +271,7 @@ void find_outline(Shape& shape) {
 
 Result<Shape> convex_shape(std::span<const glm::vec3> points) {
     const auto hull = convex_hull(points);
-    if (!hull) return tl::unexpected(hull.error());
+    if (!hull) return hull.error();
     if (hull->rank < 3)
         return fail(ErrorCode::degenerate, kNoItem, "occluder: the points are flat; give a polygon to add_surface");
     Shape shape;

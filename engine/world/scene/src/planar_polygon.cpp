@@ -34,7 +34,7 @@ Result<void> validate(const PlanarPolygon& polygon) {
 
 Result<TriangleMesh> to_mesh(const PlanarPolygon& polygon, std::span<const std::array<std::uint32_t, 3>> triangles) {
     return detail::recover([&]() -> Result<TriangleMesh> {
-        if (auto valid = validate(polygon); !valid) return tl::unexpected(valid.error());
+        if (auto valid = validate(polygon); !valid) return valid.error();
         TriangleMesh mesh;
         mesh.positions.reserve(polygon.polygon.points.size());
         for (const glm::dvec2& p : polygon.polygon.points)
@@ -43,7 +43,7 @@ Result<TriangleMesh> to_mesh(const PlanarPolygon& polygon, std::span<const std::
         mesh.indices.reserve(3 * triangles.size());
         for (const auto& triangle : triangles)
             mesh.indices.insert(mesh.indices.end(), triangle.begin(), triangle.end());
-        if (auto valid = crofton::validate(mesh); !valid) return tl::unexpected(valid.error());
+        if (auto valid = crofton::validate(mesh); !valid) return valid.error();
         return mesh;
     });
 }

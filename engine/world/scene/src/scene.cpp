@@ -48,9 +48,9 @@ Scene& Scene::operator=(Scene&&) noexcept = default;
 Result<MeshId> Scene::add_mesh(TriangleMesh mesh, std::string_view name, const Obb* box) {
     return detail::recover([&]() -> Result<MeshId> {
         State& s = *state_;
-        if (auto room = check_room(s.meshes, s.free_meshes, "meshes"); !room) return tl::unexpected(room.error());
+        if (auto room = check_room(s.meshes, s.free_meshes, "meshes"); !room) return room.error();
         auto record = make_record(std::move(mesh), name, box, s.options.criterion);
-        if (!record) return tl::unexpected(record.error());
+        if (!record) return record.error();
         reserve_one(s.meshes);
         const MeshId id = take_id(s.free_meshes, s.meshes.size(), [&] { s.meshes.emplace_back(); });
         record->revision = ++s.last_revision;
@@ -63,7 +63,7 @@ Result<MeshId> Scene::add_polygon(PlanarPolygon polygon, std::span<const std::ar
                                   std::string_view name) {
     return detail::recover([&]() -> Result<MeshId> {
         auto mesh = to_mesh(polygon, triangles);
-        if (!mesh) return tl::unexpected(mesh.error());
+        if (!mesh) return mesh.error();
         auto id = add_mesh(std::move(*mesh), name);
         if (id) state_->meshes[*id].polygon = std::move(polygon);
         return id;
@@ -73,11 +73,11 @@ Result<MeshId> Scene::add_polygon(PlanarPolygon polygon, std::span<const std::ar
 Result<NodeId> Scene::add_node(NodeId parent, const Transform& local, std::uint32_t layer_mask, std::string_view name) {
     return detail::recover([&]() -> Result<NodeId> {
         State& s = *state_;
-        if (auto room = check_room(s.nodes, s.free_nodes, "nodes"); !room) return tl::unexpected(room.error());
+        if (auto room = check_room(s.nodes, s.free_nodes, "nodes"); !room) return room.error();
         if (parent != kNone)
-            if (auto known = check_node(s.nodes, parent, "parent node"); !known) return tl::unexpected(known.error());
+            if (auto known = check_node(s.nodes, parent, "parent node"); !known) return known.error();
         if (auto valid = validate(local, s.free_nodes.empty() ? s.nodes.size() : s.free_nodes.back()); !valid)
-            return tl::unexpected(valid.error());
+            return valid.error();
         // All that needs memory comes first: without any, the scene stays as it was.
         String own_name(name);
         reserve_one(s.nodes, s.locals, s.worlds, s.node_names);
@@ -102,10 +102,9 @@ Result<NodeId> Scene::add_node(NodeId parent, const Transform& local, std::uint3
 Result<InstanceId> Scene::add_instance(NodeId node, MeshId mesh) {
     return detail::recover([&]() -> Result<InstanceId> {
         State& s = *state_;
-        if (auto room = check_room(s.instances, s.free_instances, "instances"); !room)
-            return tl::unexpected(room.error());
-        if (auto known = check_node(s.nodes, node); !known) return tl::unexpected(known.error());
-        if (auto known = check_mesh(s.meshes, mesh); !known) return tl::unexpected(known.error());
+        if (auto room = check_room(s.instances, s.free_instances, "instances"); !room) return room.error();
+        if (auto known = check_node(s.nodes, node); !known) return known.error();
+        if (auto known = check_mesh(s.meshes, mesh); !known) return known.error();
         reserve_one(s.instances, s.boxes, s.masks);
         s.touched.resize(s.instances.size() + 1);
         const InstanceId id = take_id(s.free_instances, s.instances.size(), [&] {

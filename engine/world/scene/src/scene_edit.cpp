@@ -94,7 +94,7 @@ Result<void> Scene::replace_mesh(MeshId mesh, TriangleMesh replacement, const Ob
         State& s = *state_;
         if (auto known = check_mesh(s.meshes, mesh); !known) return known;
         auto made = make_record(std::move(replacement), mesh_name(mesh), box, s.options.criterion);
-        if (!made) return tl::unexpected(made.error());
+        if (!made) return made.error();
         made->revision = ++s.last_revision;
         made->first_instance = s.meshes[mesh].first_instance;
         s.meshes[mesh] = std::move(*made);
@@ -112,7 +112,7 @@ Result<void> Scene::set_vertices(MeshId mesh, std::span<const glm::vec3> positio
                     {"scene: mesh ", mesh, " has ", record.mesh.positions.size(), " vertices, not ", positions.size(),
                      "; replace_mesh takes any number"});
     auto box = fit::fit_oriented(positions, record.box.axes);
-    if (!box) return tl::unexpected(box.error());
+    if (!box) return box.error();
     std::copy(positions.begin(), positions.end(), record.mesh.positions.begin());
     record.box = *box;
     record.revision = ++s.last_revision;

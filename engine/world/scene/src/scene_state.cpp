@@ -12,7 +12,7 @@ namespace {
 Result<Obb> box_of(const TriangleMesh& mesh, const Obb* known, const measure::Criterion& criterion) {
     if (known == nullptr)
         return fit::fit_obb(std::span<const glm::vec3>(mesh.positions), fit::FitOptions{.criterion = criterion});
-    if (auto valid = validate(*known); !valid) return tl::unexpected(valid.error());
+    if (auto valid = validate(*known); !valid) return valid.error();
     for (std::size_t i = 0; i < mesh.positions.size(); ++i)
         if (!contains(*known, glm::dvec3(mesh.positions[i])))
             return fail(ErrorCode::invalid_argument, i,
@@ -27,9 +27,9 @@ Result<MeshRecord> make_record(TriangleMesh mesh, std::string_view name, const O
     if (mesh.indices.empty() || mesh.positions.empty())
         return fail(ErrorCode::empty, kNoItem,
                     {"mesh: it has no triangles", name.empty() ? "" : " (", name, name.empty() ? "" : ")"});
-    if (auto valid = validate(mesh); !valid) return tl::unexpected(valid.error());
+    if (auto valid = validate(mesh); !valid) return valid.error();
     const auto box = box_of(mesh, known_box, criterion);
-    if (!box) return tl::unexpected(box.error());
+    if (!box) return box.error();
     MeshRecord record;
     record.mesh = std::move(mesh);
     record.box = *box;

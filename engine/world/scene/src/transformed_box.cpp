@@ -134,7 +134,7 @@ Result<Obb> transformed_box(const Transform& transform, const Obb& box, const me
         });
         if (!std::isfinite(least)) best = box_with_axes(image, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0});
     }
-    if (auto valid = crofton::validate(best); !valid) return tl::unexpected(valid.error());
+    if (auto valid = crofton::validate(best); !valid) return valid.error();
     return best;
 }
 

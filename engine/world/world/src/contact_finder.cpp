@@ -15,7 +15,7 @@
 namespace crofton::world {
 namespace {
 
-// Of two whose boxes meet.
+// Requires that the boxes meet.
 bool bounds_meet(const Object& a, const Obb& box_a, const Object& b, const Obb& box_b) {
     const bool sphere_a = a.kind == BoundKind::sphere, sphere_b = b.kind == BoundKind::sphere;
     if (sphere_a && sphere_b) return glm::length(box_a.center - box_b.center) <= a.radius + b.radius;
@@ -24,7 +24,7 @@ bool bounds_meet(const Object& a, const Obb& box_a, const Object& b, const Obb& 
     return true;
 }
 
-// Of two that meet.
+// Requires that the bounds meet.
 collide::Manifold touch_of_bounds(const Object& a, const Obb& box_a, const Object& b, const Obb& box_b) {
     const bool sphere_a = a.kind == BoundKind::sphere, sphere_b = b.kind == BoundKind::sphere;
     if (sphere_a && sphere_b) return collide::contact_manifold(sphere_of(a, box_a), sphere_of(b, box_b));

@@ -47,17 +47,17 @@ Result<void> World::State::check(MeshHandle mesh, std::uint64_t item) const {
 Result<MeshHandle> World::add_mesh(const MeshDescription& description) {
     State& s = *state_;
     const auto mesh = s.scene.add_mesh(to_mesh(description), {}, description.box);
-    if (!mesh) return tl::unexpected(mesh.error());
+    if (!mesh) return mesh.error();
     if (description.occluders)
         if (auto found = s.set_found_occluders(*mesh, {}); !found) {
             (void)s.scene.remove_mesh(*mesh);
-            return tl::unexpected(found.error());
+            return found.error();
         }
     auto clusters = world::MeshClusters::cut(s.scene.mesh(*mesh), description);
     if (!clusters) {
         s.occluders.clear(*mesh);
         (void)s.scene.remove_mesh(*mesh);
-        return tl::unexpected(clusters.error());
+        return clusters.error();
     }
     s.mesh_clusters.set(*mesh, std::move(*clusters), s.scene.mesh_revision(*mesh));
     s.shapes.set_mesh(*mesh, description.triangles);
@@ -71,11 +71,11 @@ Result<void> World::replace_mesh(MeshHandle mesh, const MeshDescription& descrip
     occlude::FoundOccluders found;
     if (description.occluders) {
         auto looked_for = occlude::find_occluders(replacement);
-        if (!looked_for) return tl::unexpected(looked_for.error());
+        if (!looked_for) return looked_for.error();
         found = std::move(*looked_for);
     }
     auto clusters = world::MeshClusters::cut(replacement, description);
-    if (!clusters) return tl::unexpected(clusters.error());
+    if (!clusters) return clusters.error();
     auto replaced = state_->scene.replace_mesh(mesh.index, std::move(replacement), description.box);
     if (!replaced) return replaced;
     state_->note_removal();
@@ -111,11 +111,11 @@ Result<NodeHandle> World::add_node(const NodeDescription& description) {
     State& s = *state_;
     scene::NodeId parent = scene::kNone;
     if (!description.parent.is_null()) {
-        if (auto known = s.check(description.parent, kNoItem); !known) return tl::unexpected(known.error());
+        if (auto known = s.check(description.parent, kNoItem); !known) return known.error();
         parent = description.parent.index;
     }
     const auto node = s.scene.add_node(parent, description.transform, description.layers);
-    if (!node) return tl::unexpected(node.error());
+    if (!node) return node.error();
     s.nodes.add(*node);
     return NodeHandle{*node, s.nodes.generations[*node]};
 }

@@ -27,7 +27,7 @@ Result<MeshClusters::Mesh> MeshClusters::cut(const TriangleMesh& triangles, cons
         return Mesh{*description.precut, 0, true, description.one_sided, true};
     }
     auto cut = depth::ClusteredMesh::cut(triangles.positions, triangles.indices);
-    if (!cut) return tl::unexpected(cut.error());
+    if (!cut) return cut.error();
     return Mesh{std::move(*cut), 0, true, description.one_sided, true};
 }
 

@@ -192,7 +192,7 @@ Result<void> ObjectShapes::scale(std::uint32_t object, const glm::dmat3& linear)
     auto scaled = ScaledShape::make(*entry.own, map, object);
     entry.scaled.reset();
     entry.nowhere = !scaled;
-    if (!scaled) return tl::unexpected(scaled.error());
+    if (!scaled) return scaled.error();
     entry.map = map;
     entry.scaled = std::move(*scaled);
     return {};
@@ -201,7 +201,7 @@ Result<void> ObjectShapes::scale(std::uint32_t object, const glm::dmat3& linear)
 Result<void> ObjectShapes::check(const convex::Shape& shape, const glm::dmat3& linear, std::uint64_t item) {
     if (is_rigid(linear) || has_nothing(linear)) return {};
     const auto scaled = ScaledShape::make(shape, split(linear), item);
-    if (!scaled) return tl::unexpected(scaled.error());
+    if (!scaled) return scaled.error();
     return {};
 }
 

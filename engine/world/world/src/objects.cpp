@@ -47,7 +47,7 @@ StagedChange& World::State::stage(std::uint32_t object) {
 // What hangs on the object's node: its mesh, or a point that stands for none.
 Result<scene::MeshId> World::State::mesh_of(const ObjectDescription& description) {
     if (!description.mesh.is_null()) {
-        if (auto known = check(description.mesh, kNoItem); !known) return tl::unexpected(known.error());
+        if (auto known = check(description.mesh, kNoItem); !known) return known.error();
         return description.mesh.index;
     }
     if (point != scene::kNone) return point;
@@ -63,7 +63,7 @@ Result<scene::MeshId> World::State::mesh_of(const ObjectDescription& description
 // The instance of an object with a mesh or a shape alone, on the node that was given or on one of its own.
 Result<void> World::State::attach_mesh(world::Object& object, const ObjectDescription& description) {
     const auto mesh = mesh_of(description);
-    if (!mesh) return tl::unexpected(mesh.error());
+    if (!mesh) return mesh.error();
     scene::NodeId node = scene::kNone;
     if (!description.node.is_null()) {
         if (auto known = check(description.node, kNoItem); !known) return known;
@@ -77,11 +77,11 @@ Result<void> World::State::attach_mesh(world::Object& object, const ObjectDescri
     }
     if (node == scene::kNone || description.transform) {
         const auto own = scene.add_node(node, local);
-        if (!own) return tl::unexpected(own.error());
+        if (!own) return own.error();
         node = object.own_node = *own;
     }
     const auto instance = scene.add_instance(node, *mesh);
-    if (!instance) return tl::unexpected(instance.error());
+    if (!instance) return instance.error();
     object.instance = *instance;
     return scene.set_instance_layers(*instance, description.layers);
 }
@@ -104,10 +104,10 @@ Result<ObjectHandle> World::add(const ObjectDescription& description) {
         return fail(ErrorCode::invalid_argument, kNoItem,
                     "world: an object that only occludes needs a mesh with occluders");
     const auto item = s.index.add(description.layers);
-    if (!item) return tl::unexpected(item.error());
+    if (!item) return item.error();
     if (auto valid = hangs ? s.attach_mesh(object, description) : validate(description.bound, kNoItem); !valid) {
         s.index.remove(*item);
-        return tl::unexpected(valid.error());
+        return valid.error();
     }
     s.table.add(*item, object, description.user);
     StagedChange& change = s.stage(*item);

@@ -49,7 +49,7 @@ std::optional<std::array<glm::vec3, 8>> inner_corners(const Obb& box) {
 Result<void> complete_surface(FoundOccluder& occluder, std::uint64_t place) {
     if (occluder.kind == OccluderKind::convex && occluder.surface.indices.empty()) {
         auto hull = convex_hull(occluder.surface.positions);
-        if (!hull) return tl::unexpected(hull.error());
+        if (!hull) return hull.error();
         occluder.surface.indices = std::move(hull->triangles);
     }
     const bool is_box = occluder.kind == OccluderKind::box || occluder.kind == OccluderKind::walled;
@@ -96,7 +96,7 @@ Result<void> Occluders::set(scene::MeshId mesh, std::span<const FoundOccluder> o
             if (shape)
                 shapes.push_back(*shape);
             else
-                done = tl::unexpected(shape.error());
+                done = shape.error();
         }
         if (done) continue;
         remove_shapes(shapes);

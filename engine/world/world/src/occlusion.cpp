@@ -11,7 +11,7 @@ namespace crofton {
 
 Result<void> World::State::set_found_occluders(scene::MeshId mesh, const occlude::FindOptions& how) {
     const auto found = occlude::find_occluders(scene.mesh(mesh), how);
-    if (!found) return tl::unexpected(found.error());
+    if (!found) return found.error();
     return occluders.set(mesh, found->occluders);
 }
 

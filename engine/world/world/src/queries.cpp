@@ -96,7 +96,7 @@ double gap_between(const Aabb& a, const Obb& box) {
     return std::max({gap.x, gap.y, gap.z});
 }
 
-// Of two points of the boxes, at most.
+// Returns an upper bound of the distance of two points of the boxes.
 double farthest(const Aabb& a, const Aabb& b) {
     return glm::length(glm::max(glm::abs(a.max - b.min), glm::abs(b.max - a.min))) * (1.0 + 1e-9);
 }
@@ -141,7 +141,7 @@ std::optional<ObjectHit> World::State::own_shape_hit(const Ray& ray, std::uint32
 
 namespace {
 
-// Of a mesh whose transform flattens it, which no ray in the mesh's frame can meet: asks all triangles.
+// Tests all triangles of a mesh whose transform flattens it, which no ray in the mesh's frame can meet.
 std::optional<mesh::TriangleHit> raycast_flat(const Ray& ray, const world::PlacedMesh& placed) {
     std::optional<mesh::TriangleHit> nearest;
     const std::span<const std::uint32_t> rejected = placed.mesh->tree.rejected();
@@ -155,7 +155,7 @@ std::optional<mesh::TriangleHit> raycast_flat(const Ray& ray, const world::Place
     return nearest;
 }
 
-// Of an object with a bound, whose box the ray meets at `box_t`.
+// Handles an object with a bound, whose box the ray meets at `box_t`.
 std::optional<ObjectHit> bound_hit(const Ray& ray, const ObjectRef& ref, const world::Object& object, const Obb& box,
                                    double box_t) {
     ObjectHit hit{ref.object, ref.user, box_t};

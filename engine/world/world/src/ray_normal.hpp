@@ -15,14 +15,14 @@ namespace crofton::world {
     return (glm::dot(normal, ray.direction) > 0.0 ? -1.0 : 1.0) / length * normal;
 }
 
-// Of a sphere that is met at t.
+// Returns the normal of a sphere where the ray meets it, at t.
 [[nodiscard]] inline glm::dvec3 normal_of(const Ray& ray, const Sphere& sphere, double t) {
     const glm::dvec3 to = ray.origin - sphere.center;
     if (glm::dot(to, to) <= sphere.radius * sphere.radius) return glm::dvec3(0.0);
     return facing(ray, to + t * ray.direction);
 }
 
-// Of a box that is met at t: of the face whose plane the ray enters last.
+// Returns the normal of a box that the ray meets at t: that of the face whose plane the ray enters last.
 [[nodiscard]] inline glm::dvec3 normal_of(const Ray& ray, const Obb& box, double t) {
     const glm::dvec3 offset = ray.origin - box.center;
     double last = -std::numeric_limits<double>::infinity();
@@ -43,7 +43,7 @@ namespace crofton::world {
     return inside ? glm::dvec3(0.0) : facing(ray, normal);
 }
 
-// Of a triangle under a linear map.
+// Returns the normal of a triangle under a linear map.
 [[nodiscard]] inline glm::dvec3 normal_of(const Ray& ray, const Triangle& triangle, const glm::dmat3& linear) {
     return facing(ray, glm::cross(linear * (triangle[1] - triangle[0]), linear * (triangle[2] - triangle[0])));
 }

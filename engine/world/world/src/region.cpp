@@ -91,11 +91,11 @@ Result<Region> Region::prepare(Strided<RegionObject> objects, const RegionOption
         boxes.reserve(objects.size());
         layers.reserve(objects.size());
         contents.items.reserve(objects.size());
-        if (auto done = read(objects, options, stop, contents); !done) return tl::unexpected(done.error());
+        if (auto done = read(objects, options, stop, contents); !done) return done.error();
         Region region;
         if (boxes.empty()) return region;
         auto tree = tree_over(boxes, layers, options, executor);
-        if (!tree) return tl::unexpected(tree.error());
+        if (!tree) return tree.error();
         auto data = Owner<world::RegionData>::make(std::move(*tree));
         data->items = std::move(contents.items);
         if (contents.solids) {
@@ -111,7 +111,7 @@ Result<Region> Region::prepare(Strided<RegionObject> objects, const RegionOption
             data->common_layers &= layers[i];
         }
         data->most_radius *= 1.0 + 0x1p-40;  // of the root's rounding
-        if (stop.is_raised(1.0)) return tl::unexpected(cancelled().error());
+        if (stop.is_raised(1.0)) return cancelled().error();
         region.data_ = data.release();
         return region;
     });

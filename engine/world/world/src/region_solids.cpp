@@ -45,10 +45,9 @@ Result<void> RegionSolids::add_meshes(std::span<const RegionMesh> meshes, detail
         wants_triangles_.push_back(description.triangles);
         description.triangles = false;  // finish() builds the trees
         const auto mesh = world_.add_mesh(description);
-        if (!mesh) return tl::unexpected(at_item(mesh.error(), i));
+        if (!mesh) return at_item(mesh.error(), i);
         if (!description.occluders && !meshes[i].occluders.empty())
-            if (auto set = world_.set_occluders(*mesh, meshes[i].occluders); !set)
-                return tl::unexpected(at_item(set.error(), i));
+            if (auto set = world_.set_occluders(*mesh, meshes[i].occluders); !set) return at_item(set.error(), i);
         meshes_.push_back(*mesh);
     }
     return {};
@@ -78,7 +77,7 @@ Result<void> RegionSolids::add(const RegionObject& object, std::uint32_t item) {
     if (has_mesh) description.mesh = meshes_[object.mesh];
     if (has_transform) description.transform = object.transform;
     const auto in_world = world_.add(description);
-    if (!in_world) return tl::unexpected(at_item(in_world.error(), item));
+    if (!in_world) return at_item(in_world.error(), item);
     added.object = in_world->index;
     return {};
 }

@@ -134,7 +134,7 @@ OcclusionStatistics ViewResult::whole_occlusion_statistics() const {
     return whole_->occlusion;
 }
 
-// Of an object of a region. Ids in tree order are searched one by one.
+// Finds an object of a region. Searches ids in tree order one by one.
 occlude::Verdict ViewResult::region_verdict_of(std::uint32_t index) const {
     if (!with_regions_) return occlude::Verdict::outside;
     const std::span<const std::uint32_t> listed = ids(), hidden = occluded_ids();

@@ -91,7 +91,7 @@ Result<RegionHandle> Regions::attach(const Region& region, const glm::dvec3& ori
     std::uint32_t first = kNoIndex;
     if (pages > 0) {
         const auto taken = take_pages(pages);
-        if (!taken) return tl::unexpected(taken.error());
+        if (!taken) return taken.error();
         first = kFirstRegionIndex + *taken * kPage;
     }
     if (free_slots_.empty()) {

@@ -112,13 +112,13 @@ Result<std::unique_ptr<ScaledShape>> ScaledShape::make(const convex::Shape& shap
     auto scaled = std::make_unique<ScaledShape>();
     if (auto made = scaled->make(shape, map); !made) {
         made.error().item = item;
-        return tl::unexpected(made.error());
+        return made.error();
     }
     return scaled;
 }
 
 Result<void> ScaledShape::take(Result<convex::Shape> made) {
-    if (!made) return tl::unexpected(made.error());
+    if (!made) return made.error();
     shape_ = *made;
     return {};
 }
@@ -165,7 +165,7 @@ Result<void> ScaledShape::make_points(const convex::Shape& shape, const SplitMap
         return take_rounded(convex::Shape::triangle(points[0], points[1], points[2]));
     }
     auto hull = convex::Hull::build(points);
-    if (!hull) return tl::unexpected(hull.error());
+    if (!hull) return hull.error();
     hull_ = std::make_unique<convex::Hull>(std::move(*hull));
     return take_rounded(convex::Shape::hull(*hull_));
 }
@@ -218,7 +218,7 @@ Result<void> ScaledShape::make_mesh(const convex::Shape& shape, const SplitMap& 
         for (std::size_t i = 0; i + 2 < scaled.indices.size(); i += 3)
             std::swap(scaled.indices[i + 1], scaled.indices[i + 2]);
     auto made = mesh::MeshTree::build(scaled);
-    if (!made) return tl::unexpected(made.error());
+    if (!made) return made.error();
     if (made->triangle_count() != tree.triangle_count())
         return fail(ErrorCode::out_of_range, kNoItem,
                     "world: the object's shape is a mesh that its transform puts beyond 1e12");
@@ -241,7 +241,7 @@ Result<void> ScaledShape::make_field(const convex::Shape& shape, const SplitMap&
                                             .heights = {heights.data(), heights.size()},
                                             .spacing = spacing,
                                             .materials = {materials.data(), materials.size()}});
-    if (!made) return tl::unexpected(made.error());
+    if (!made) return made.error();
     field_ = std::make_unique<convex::HeightField>(std::move(*made));
     return take(convex::Shape::height_field(*field_, shape.sides()));
 }
@@ -252,12 +252,12 @@ Result<void> ScaledShape::make_compound(const convex::Shape& shape, const SplitM
     for (const convex::CompoundChild& child : shape.compound()->children()) {
         const SplitMap of_child = split(map.rest * child.pose.rotation);
         auto scaled = ScaledShape::make(child.shape, of_child, kNoItem);
-        if (!scaled) return tl::unexpected(scaled.error());
+        if (!scaled) return scaled.error();
         children.push_back({(*scaled)->shape(), {of_child.rotation, map.rest * child.pose.translation}});
         children_.push_back(std::move(*scaled));
     }
     auto made = convex::Compound::build({children.data(), children.size()});
-    if (!made) return tl::unexpected(made.error());
+    if (!made) return made.error();
     compound_ = std::make_unique<convex::Compound>(std::move(*made));
     return take(convex::Shape::compound(*compound_));
 }

@@ -32,7 +32,7 @@ class ShapeContacts {
         const Regions& regions;
         double margin;
 
-        // Of objects of the World's own and of regions.
+        // Objects of the World's own and of regions.
         [[nodiscard]] bool has_shape(std::uint32_t object) const {
             return is_region_index(object) ? regions.has_shape(object) : shapes.has(object);
         }

@@ -137,12 +137,11 @@ std::optional<ClosestObject> World::closest(const convex::Shape& probe, const Ri
 Result<std::optional<ShapeHit>> World::cast(const convex::Shape& probe, const RigidTransform& pose,
                                             const convex::Motion& motion, const convex::CastOptions& options,
                                             std::uint32_t layers) const {
-    if (auto good = check(probe, pose); !good) return tl::unexpected(good.error());
+    if (auto good = check(probe, pose); !good) return good.error();
     // Bad motions and options are told also where nothing is near.
     static const convex::Shape kPoint = *convex::Shape::sphere(0.0);
     const RigidTransform far{glm::dmat3(1.0), glm::dvec3(1e15)};
-    if (auto good = convex::cast({probe, pose}, motion, {kPoint, far}, {}, options); !good)
-        return tl::unexpected(good.error());
+    if (auto good = convex::cast({probe, pose}, motion, {kPoint, far}, {}, options); !good) return good.error();
     const State& s = *state_;
     const auto hit_of = [&](std::uint32_t id, const convex::Impact& impact) {
         const ObjectRef ref = s.ref_of(id);

@@ -46,7 +46,7 @@ Result<void> check_limits(const cull::DrawLimits& limits, std::uint64_t item) {
 }
 
 Result<void> check_occlusion(const OcclusionOptions& occlusion, std::uint64_t item) {
-    if (auto good = occlude::validate(occlusion.size); !good) return tl::unexpected(at_item(good.error(), item));
+    if (auto good = occlude::validate(occlusion.size); !good) return at_item(good.error(), item);
     if (std::isnan(occlusion.least_cover))
         return fail(ErrorCode::non_finite, item, "view: `least_cover` of the occlusion is NaN");
     return {};
@@ -73,14 +73,14 @@ Result<void> check(const ViewRequest& request, std::uint64_t item) {
 }
 
 Result<Eye> eye_of(const ViewRequest& request, std::uint64_t item) {
-    if (auto good = check(request, item); !good) return tl::unexpected(good.error());
+    if (auto good = check(request, item); !good) return good.error();
     Eye eye;
     eye.plain.layer_mask = request.layers;
     if (request.occlusion) {
         const auto view = request.camera ? occlude::occlusion_view_of(*request.camera)
                                          : occlude::occlusion_view_of(request.matrix->to_clip, request.matrix->depth,
                                                                       request.matrix->origin);
-        if (!view) return tl::unexpected(at_item(view.error(), item));
+        if (!view) return at_item(view.error(), item);
         eye.occluding = *view;
         if (request.volume) eye.occluding.frustum = *request.volume;
         eye.plain.frustum = eye.occluding.frustum;
@@ -93,7 +93,7 @@ Result<Eye> eye_of(const ViewRequest& request, std::uint64_t item) {
     const auto frustum = request.camera
                              ? frustum_of(*request.camera)
                              : frustum_of(request.matrix->to_clip, request.matrix->depth, request.matrix->origin);
-    if (!frustum) return tl::unexpected(at_item(frustum.error(), item));
+    if (!frustum) return at_item(frustum.error(), item);
     eye.plain.frustum = *frustum;
     return eye;
 }
@@ -196,7 +196,7 @@ Result<void> World::check_receivers(const ViewRequest& request, const ViewResult
 
 Result<void> World::view(const ViewRequest& request, ViewResult& visible, Executor& executor) const {
     const auto eye = eye_of(request, kNoItem);
-    if (!eye) return tl::unexpected(eye.error());
+    if (!eye) return eye.error();
     if (auto good = check_receivers(request, &visible, kNoItem); !good) return good;
     view_own(request, *eye, visible, executor);
     if (!state_->regions.is_empty()) add_regions(request, eye->plain, visible, executor);
@@ -244,7 +244,7 @@ Result<void> World::view(std::span<const ViewRequest> requests, MultiViewResult&
     std::array<Eye, cull::kMaxViews> eyes;
     for (std::size_t v = 0; v < requests.size(); ++v) {
         const auto eye = eye_of(requests[v], v);
-        if (!eye) return tl::unexpected(eye.error());
+        if (!eye) return eye.error();
         if (auto good = check_receivers(requests[v], nullptr, v); !good) return good;
         eyes[v] = *eye;
         if (requests[v].order != requests[0].order)

@@ -55,7 +55,7 @@ bool World::contains(RegionHandle region) const {
 }
 
 Result<ObjectHandle> World::object_in(RegionHandle region, std::uint32_t place) const {
-    if (auto known = state_->regions.check(region); !known) return tl::unexpected(known.error());
+    if (auto known = state_->regions.check(region); !known) return known.error();
     const world::Attachment& attachment = state_->regions.at(region);
     if (place >= attachment.size())
         return fail(ErrorCode::out_of_range, place, {"world: the region has ", attachment.size(), " objects"});
@@ -66,19 +66,19 @@ Result<RegionPlace> World::place_of(ObjectHandle object) const {
     const world::Regions& regions = state_->regions;
     if (regions.contains(object))
         return RegionPlace{regions.handle_of(object.index), object.index - regions.of(object.index).first};
-    if (auto known = state_->check(object, object.index); !known) return tl::unexpected(known.error());
+    if (auto known = state_->check(object, object.index); !known) return known.error();
     return fail(ErrorCode::invalid_argument, object.index, "world: the object is of no region: World::add added it");
 }
 
 Result<std::uint64_t> World::user_of(ObjectHandle object) const {
     if (state_->regions.contains(object)) return state_->regions.ref(object.index).user;
-    if (auto known = state_->check(object, object.index); !known) return tl::unexpected(known.error());
+    if (auto known = state_->check(object, object.index); !known) return known.error();
     return state_->table.users[object.index];
 }
 
 Result<Obb> World::box_of(ObjectHandle object) const {
     if (state_->regions.contains(object)) return state_->regions.box(object.index);
-    if (auto known = state_->check(object, object.index); !known) return tl::unexpected(known.error());
+    if (auto known = state_->check(object, object.index); !known) return known.error();
     if (!state_->index.has_box(object.index))
         return fail(ErrorCode::empty, object.index,
                     "world: the object has no box before the first update after it was added");
@@ -90,7 +90,7 @@ Result<Transform> World::transform_of(ObjectHandle object) const {
         if (regions.has_transform(object.index)) return regions.transform(object.index);
         return fail(ErrorCode::invalid_argument, object.index, "world: the object is a bound and has no transform");
     }
-    if (auto known = state_->check(object, object.index); !known) return tl::unexpected(known.error());
+    if (auto known = state_->check(object, object.index); !known) return known.error();
     const std::uint32_t instance = state_->table.objects[object.index].instance;
     if (instance == kNoIndex)
         return fail(ErrorCode::invalid_argument, object.index, "world: the object is a bound and has no transform");

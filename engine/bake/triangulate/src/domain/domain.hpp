@@ -77,7 +77,7 @@ class Domain {
     [[nodiscard]] Result<void> enter(Index half_edge, State state);
     void flood(Index triangle);
     [[nodiscard]] Result<State> cross(State state, Index mark);
-    [[nodiscard]] tl::unexpected<Error> overlap(Index mark, Index a, Index b) const;
+    [[nodiscard]] Error overlap(Index mark, Index a, Index b) const;
     [[nodiscard]] Result<void> check_holes() const;
     [[nodiscard]] Result<void> check_slits() const;
     [[nodiscard]] bool touches_inside(Index vertex) const;

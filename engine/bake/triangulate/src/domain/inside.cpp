@@ -40,7 +40,7 @@ Result<Domain::State> Domain::cross(State state, Index mark) {
     return state;
 }
 
-tl::unexpected<Error> Domain::overlap(Index mark, Index a, Index b) const {
+Error Domain::overlap(Index mark, Index a, Index b) const {
     const Index input = record(mark - 1).input;
     return fail(ErrorCode::degenerate, input,
                 {name_of(input).text, ": holes ", std::min(a, b), " and ", std::max(a, b),
@@ -154,7 +154,7 @@ Result<void> Domain::enter(Index half_edge, State state) {
     const Index mark = mesh_.mark[half_edge];
     if (mark != 0) {
         const auto crossed = cross(state, mark);
-        if (!crossed) return tl::unexpected<Error>(crossed.error());
+        if (!crossed) return crossed.error();
         state = *crossed;
         if (state.outer == 0 && state.hole != 0) {
             const Index input = record(mark - 1).input;

@@ -32,7 +32,7 @@ double sum_of_shortest(std::span<double> lengths, std::size_t count) {
     return std::accumulate(lengths.begin(), lengths.begin() + static_cast<std::ptrdiff_t>(count), 0.0);
 }
 
-tl::unexpected<Error> cancelled() {
+Error cancelled() {
     return fail(ErrorCode::cancelled, kNoItem, "stopped by the caller");
 }
 

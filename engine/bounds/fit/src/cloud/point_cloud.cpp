@@ -24,7 +24,7 @@ constexpr int kLeastExponent = -1000;       // of the unit: its inverse is a dou
 constexpr std::size_t kScanAllChunks = 16;  // up to this many, picking the promising ones costs more than it saves
 
 template <class T>
-tl::unexpected<Error> first_bad(const T* points, std::size_t count) {
+Error first_bad(const T* points, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {
         bool finite = true, small = true;
         for (std::size_t k = 0; k < 3; ++k) {

@@ -45,8 +45,8 @@ struct VulkanContext {
 // Returns an error with the message "what: VK_ERROR_…": `unavailable` for a lost device or a lost surface,
 // `out_of_range` if memory is full, `internal` otherwise.
 [[nodiscard]] Error vulkan_error(VkResult result, const char* what);
-[[nodiscard]] inline tl::unexpected<Error> vulkan_failure(VkResult result, const char* what) {
-    return tl::unexpected(vulkan_error(result, what));
+[[nodiscard]] inline Error vulkan_failure(VkResult result, const char* what) {
+    return vulkan_error(result, what);
 }
 [[nodiscard]] const char* vulkan_result_name(VkResult result);
 

@@ -21,7 +21,7 @@ constexpr double kLargestLight = 1e12;
 // what is straight behind the apex to be in the cone.
 constexpr double kLeastSine = 1e-30;
 
-tl::unexpected<Error> bad_light(std::size_t light, ErrorCode code, const char* why) {
+Error bad_light(std::size_t light, ErrorCode code, const char* why) {
     return fail(code, light, {"light ", light, ": ", why});
 }
 

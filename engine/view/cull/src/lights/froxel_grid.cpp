@@ -61,7 +61,7 @@ Result<void> check_depths(std::span<const double> depths, bool perspective) {
 }  // namespace
 
 Result<FroxelGrid> FroxelGrid::build(const Camera& camera, const FroxelOptions& options) {
-    if (auto valid = check_grid(camera, options); !valid) return tl::unexpected(valid.error());
+    if (auto valid = check_grid(camera, options); !valid) return valid.error();
     const bool perspective = camera.projection == Projection::perspective;
     FroxelGrid grid;
     const std::uint32_t size[3] = {options.columns, options.rows, options.slices};
@@ -77,7 +77,7 @@ Result<FroxelGrid> FroxelGrid::build(const Camera& camera, const FroxelOptions& 
                                : perspective ? near * power(far / near, share)
                                              : near + share * (far - near));
     }
-    if (auto valid = check_depths(grid.depths_, perspective); !valid) return tl::unexpected(valid.error());
+    if (auto valid = check_depths(grid.depths_, perspective); !valid) return valid.error();
 
     grid.doubles_.assign(FroxelArrays<double>::length(size), 0.0);
     double* to = grid.doubles_.data();

@@ -134,7 +134,7 @@ bool is_within_limits(const DrawLimits& limits, const Sphere& sphere, boxtree::I
 }
 
 Result<DrawLimits> limits_of(const Camera& camera, double picture_height, double pixels) {
-    if (auto valid = validate(camera); !valid) return tl::unexpected(valid.error());
+    if (auto valid = validate(camera); !valid) return valid.error();
     const auto is_positive = [](double value) { return value > 0.0 && value <= kMaxCoordinate; };
     if (!is_positive(picture_height) || !is_positive(pixels))
         return fail(ErrorCode::out_of_range, kNoItem,

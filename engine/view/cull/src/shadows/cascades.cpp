@@ -67,9 +67,9 @@ Result<Camera> cascade_camera(const Camera& camera, double near, double far, con
     part.near_distance = near;
     part.far_distance = far;
     const Result<Frustum> frustum = frustum_of(part);
-    if (!frustum) return tl::unexpected(frustum.error());
+    if (!frustum) return frustum.error();
     const Result<std::array<glm::dvec3, 8>> corners = frustum_corners(*frustum);
-    if (!corners) return tl::unexpected(corners.error());
+    if (!corners) return corners.error();
     if (!is_finite(toward_light) || toward_light == glm::dvec3(0.0))
         return fail(ErrorCode::degenerate, kNoItem, "cascade: the direction of the light is zero or not finite");
     if (!(caster_distance >= 0.0) || !std::isfinite(caster_distance))

@@ -43,7 +43,7 @@ Result<void> check(const Frustum& view, const glm::dvec3& light) {
 }  // namespace
 
 Result<Frustum> shadow_volume(const Frustum& view, const glm::dvec3& toward_light) {
-    if (auto valid = check(view, toward_light); !valid) return tl::unexpected(valid.error());
+    if (auto valid = check(view, toward_light); !valid) return valid.error();
     const glm::dvec3 direction = of_moderate_length(toward_light);
     const double length = glm::length(direction);
     if (!(length > 0.0))
@@ -55,7 +55,7 @@ Result<Frustum> shadow_volume(const Frustum& view, const glm::dvec3& toward_ligh
 }
 
 Result<Frustum> shadow_volume_of_point(const Frustum& view, const glm::dvec3& light_position) {
-    if (auto valid = check(view, light_position); !valid) return tl::unexpected(valid.error());
+    if (auto valid = check(view, light_position); !valid) return valid.error();
     double at_light[Frustum::kMaxPlanes] = {};
     for (std::uint32_t i = 0; i < view.plane_count; ++i)
         at_light[i] = glm::dot(view.planes[i].normal, light_position - view.origin) + view.planes[i].offset;

@@ -305,7 +305,7 @@ void OccluderCandidates::Data::set_limits(std::uint32_t& place, const EyeLimits&
 
 Result<std::uint32_t> OccluderCandidates::add(const OccluderCandidate& candidate) {
     const std::size_t id = data_->count;
-    if (auto status = check(id, candidate); !status) return tl::unexpected(status.error());
+    if (auto status = check(id, candidate); !status) return status.error();
     if (id == 0) data_->origin = candidate.center;
     reserve(id + 1);
     data_->write(id, candidate);
@@ -373,7 +373,7 @@ Result<void> choose_occluders(const OccluderCandidates& candidates, const Camera
                               OccluderChoice& choice) {
     choice.ids.clear();
     const auto view = occlusion_view_of(camera);
-    if (!view) return tl::unexpected(view.error());
+    if (!view) return view.error();
     choose_occluders(candidates, *view, budget, choice);
     return {};
 }

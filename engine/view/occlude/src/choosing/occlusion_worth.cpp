@@ -34,9 +34,9 @@ Result<void> check_scene(const SeenScene& scene) {
 }  // namespace
 
 Result<double> occlusion_worth(std::span<const glm::dvec3> points, const SeenScene& scene) {
-    if (auto status = check_scene(scene); !status) return tl::unexpected(status.error());
+    if (auto status = check_scene(scene); !status) return status.error();
     const auto hull = convex_hull(points);
-    if (!hull) return tl::unexpected(hull.error());
+    if (!hull) return hull.error();
     Vector<glm::dvec3> body, shadow;
     for (const std::uint32_t i : hull->vertices) body.push_back(points[i]);
     double sum = 0.0;
@@ -52,13 +52,13 @@ Result<double> occlusion_worth(std::span<const glm::dvec3> points, const SeenSce
         for (const glm::dvec3& p : body) shadow.push_back(eye + (scene.range / farthest) * (p - eye));
         shadow.push_back(eye);
         const auto with_eye = convex_hull(shadow);
-        if (!with_eye) return tl::unexpected(with_eye.error());
+        if (!with_eye) return with_eye.error();
         const auto last = static_cast<std::uint32_t>(shadow.size() - 1);
         if (std::find(with_eye->vertices.begin(), with_eye->vertices.end(), last) == with_eye->vertices.end())
             continue;  // inside
         shadow.pop_back();
         const auto volumes = measure::intrinsic_volumes_of_hull(shadow);
-        if (!volumes) return tl::unexpected(volumes.error());
+        if (!volumes) return volumes.error();
         sum += std::max(0.0, volumes->volume - volumes->area * scene.object.mean_curvature / (4.0 * std::numbers::pi));
     }
     return sum / scene.samples;

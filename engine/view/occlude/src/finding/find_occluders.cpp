@@ -102,7 +102,7 @@ void choose(const Search& search, const ShadowCaster& caster, Vector<FoundOcclud
 }  // namespace
 
 Result<FoundOccluders> find_occluders(const TriangleMesh& mesh, const FindOptions& options) {
-    if (auto status = check_options(options); !status) return tl::unexpected(status.error());
+    if (auto status = check_options(options); !status) return status.error();
     if (mesh.indices.size() % 3 != 0)
         return fail(ErrorCode::invalid_argument, mesh.indices.size(),
                     "find_occluders: the index count is no multiple of three");

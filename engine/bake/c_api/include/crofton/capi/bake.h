@@ -94,7 +94,7 @@ CROFTON_API crofton_status crofton_baked_scene_destroy(crofton_baked_scene* bake
 CROFTON_API crofton_status crofton_baked_scene_mesh_count(const crofton_baked_scene* baked, size_t* count);
 CROFTON_API crofton_status crofton_baked_scene_mesh(const crofton_baked_scene* baked, uint32_t mesh_id,
                                                     crofton_baked_mesh* mesh);
-/* Makes a mesh's clusters for crofton_depth_object without cutting it anew: a handle of its own, which may outlive
+/* Makes a mesh's clusters for crofton_depth_object without cutting it again: a handle of its own, which may outlive
  * `baked`. Returns CROFTON_EMPTY if the mesh was baked without clusters (by an older version, or because it cannot be
  * cut). */
 CROFTON_API crofton_status crofton_baked_scene_clusters(const crofton_baked_scene* baked, uint32_t mesh_id,

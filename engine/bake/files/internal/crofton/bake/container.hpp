@@ -66,7 +66,7 @@ class Reader {
     template <class T>
     [[nodiscard]] Result<std::span<const T>> section(std::string_view name) const {
         const auto bytes = find(name, sizeof(T));
-        if (!bytes) return tl::unexpected(bytes.error());
+        if (!bytes) return bytes.error();
         return std::span(reinterpret_cast<const T*>(bytes->data()), bytes->size() / sizeof(T));
     }
     [[nodiscard]] std::span<const Section> sections() const { return sections_; }

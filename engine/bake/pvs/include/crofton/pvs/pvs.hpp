@@ -68,7 +68,7 @@ class Cells {
     glm::uvec3 counts_{0};
     Vector<Aabb> boxes_;  // of cells that are no grid
     std::shared_ptr<const BoxVoxels> voxels_;
-    // Of convex cells:
+    // For convex cells:
     Vector<ConvexCell> corners_;
     Vector<double> surfaces_;
     Vector<Plane> planes_;

@@ -4,10 +4,11 @@
 #include <concepts>
 #include <crofton/core/version.hpp>
 #include <cstdint>
+#include <exception>
 #include <initializer_list>
+#include <new>
 #include <string>
 #include <string_view>
-#include <tl/expected.hpp>
 #include <type_traits>
 #include <utility>
 
@@ -57,34 +58,71 @@ struct Error {
 };
 
 // Result::value() throws this if there is no value. If nothing catches it, the program ends with the error's message.
-class BadResult : public tl::bad_expected_access<Error> {
+class BadResult : public std::exception {
   public:
-    using tl::bad_expected_access<Error>::bad_expected_access;
+    explicit BadResult(Error error) noexcept : error_(std::move(error)) {}
+    [[nodiscard]] const Error& error() const noexcept { return error_; }
     [[nodiscard]] const char* what() const noexcept override {
-        return error().message.empty() ? to_string(error().code) : error().message.c_str();
+        return error_.message.empty() ? to_string(error_.code) : error_.message.c_str();
     }
+
+  private:
+    Error error_;
 };
 
 namespace detail {
+struct Nothing {};                                        // the value of a Result<void>
 [[noreturn]] void end_without_value(const Error& error);  // prints the message and aborts
-}
+}  // namespace detail
 
 // Holds a value, or the Error that says why there is none.
 //
-// The compiler warns if you ignore one. Test it, or write (void)world.update() if the call cannot fail.
+// The compiler warns if you ignore one. Test it, or write (void)world.update() if the call cannot fail. To pass an
+// error on, return it: `if (!tree) return tree.error();`
 template <class T>
-class [[nodiscard]] Result : public tl::expected<T, Error> {
-    using Base = tl::expected<T, Error>;
+class [[nodiscard]] Result {
+    using Value = std::conditional_t<std::is_void_v<T>, detail::Nothing, T>;
+    static constexpr bool kMoves = std::is_nothrow_move_constructible_v<Value>;
 
   public:
-    Result() = default;
-    Result(Base result) : Base(std::move(result)) {}
-    Result(tl::unexpected<Error> error) : Base(std::move(error)) {}
+    Result() requires std::default_initializable<Value> : value_(), has_value_(true) {}
+    Result(Error error) noexcept : error_(std::move(error)), has_value_(false) {}
     template <class U = T>
-    requires(std::is_constructible_v<T, U&&> && !std::derived_from<std::remove_cvref_t<U>, Base> &&
-             !std::same_as<std::remove_cvref_t<U>, tl::unexpected<Error>>) explicit(!std::is_convertible_v<U&&, T>)
+    requires(std::is_constructible_v<Value, U&&> && !std::same_as<std::remove_cvref_t<U>, Result> &&
+             !std::same_as<std::remove_cvref_t<U>, Error>) explicit(!std::is_convertible_v<U&&, Value>)
         Result(U&& value)
-        : Base(std::forward<U>(value)) {}
+        : value_(std::forward<U>(value)), has_value_(true) {}
+    Result(const Result& other) requires std::is_copy_constructible_v<Value> { take(other); }
+    Result(Result&& other) noexcept(kMoves) { take(std::move(other)); }
+    Result& operator=(const Result& other) requires std::is_copy_constructible_v<Value> {
+        return *this = Result(other);
+    }
+    Result& operator=(Result&& other) noexcept {
+        static_assert(kMoves);
+        if (this == &other) return *this;
+        clear();
+        take(std::move(other));
+        return *this;
+    }
+    ~Result() { clear(); }
+
+    [[nodiscard]] bool has_value() const noexcept { return has_value_; }
+    explicit operator bool() const noexcept { return has_value_; }
+
+    // Return the value. Requires has_value().
+    const Value& operator*() const& noexcept { return value_; }
+    Value& operator*() & noexcept { return value_; }
+    Value&& operator*() && noexcept { return std::move(value_); }
+    const Value* operator->() const noexcept { return &value_; }
+    Value* operator->() noexcept { return &value_; }
+
+    // Returns the value, or `other` if there is none.
+    Value value_or(Value other) const& { return has_value_ ? value_ : std::move(other); }
+
+    // Returns the error. Requires !has_value().
+    [[nodiscard]] const Error& error() const& noexcept { return error_; }
+    [[nodiscard]] Error& error() & noexcept { return error_; }
+    [[nodiscard]] Error&& error() && noexcept { return std::move(error_); }
 
     // Returns the value; returns nothing for a Result<void>.
     //
@@ -92,26 +130,46 @@ class [[nodiscard]] Result : public tl::expected<T, Error> {
     // program. Use it in tests, and in programs that end with the first error.
     std::add_lvalue_reference_t<const T> value() const& {
         demand();
-        if constexpr (!std::is_void_v<T>) return **this;
+        if constexpr (!std::is_void_v<T>) return value_;
     }
     std::add_lvalue_reference_t<T> value() & {
         demand();
-        if constexpr (!std::is_void_v<T>) return **this;
+        if constexpr (!std::is_void_v<T>) return value_;
     }
     std::add_rvalue_reference_t<T> value() && {
         demand();
-        if constexpr (!std::is_void_v<T>) return std::move(**this);
+        if constexpr (!std::is_void_v<T>) return std::move(value_);
     }
 
   private:
+    template <class Other>
+    void take(Other&& other) {
+        has_value_ = other.has_value_;
+        if (has_value_)
+            ::new (static_cast<void*>(&value_)) Value(*std::forward<Other>(other));
+        else
+            ::new (static_cast<void*>(&error_)) Error(std::forward<Other>(other).error());
+    }
+    void clear() noexcept {
+        if (has_value_)
+            value_.~Value();
+        else
+            error_.~Error();
+    }
     void demand() const {
-        if (this->has_value()) return;
+        if (has_value_) return;
 #if defined(__cpp_exceptions) || defined(_CPPUNWIND)
-        throw BadResult(this->error());
+        throw BadResult(error_);
 #else
-        detail::end_without_value(this->error());
+        detail::end_without_value(error_);
 #endif
     }
+
+    union {
+        Value value_;
+        Error error_;
+    };
+    bool has_value_;
 };
 
 // A text or a number of a message. It does not copy the text.
@@ -140,15 +198,14 @@ class MessagePart {
 };
 
 // Makes an error. If there is no memory for the message, the message is empty; code and item are set all the same.
-[[nodiscard]] tl::unexpected<Error> fail(ErrorCode code, std::uint64_t item,
-                                         std::initializer_list<MessagePart> message) noexcept;
-[[nodiscard]] inline tl::unexpected<Error> fail(ErrorCode code, std::uint64_t item, const char* message) noexcept {
+[[nodiscard]] Error fail(ErrorCode code, std::uint64_t item, std::initializer_list<MessagePart> message) noexcept;
+[[nodiscard]] inline Error fail(ErrorCode code, std::uint64_t item, const char* message) noexcept {
     return fail(code, item, {MessagePart(message)});
 }
 // Takes a finished message. (A template, so that braces mean parts.)
 template <std::same_as<std::string> String>
-[[nodiscard]] tl::unexpected<Error> fail(ErrorCode code, std::uint64_t item, String message) {
-    return tl::unexpected<Error>(Error{code, item, std::move(message)});
+[[nodiscard]] Error fail(ErrorCode code, std::uint64_t item, String message) {
+    return {code, item, std::move(message)};
 }
 
 // ---- Log ----

@@ -288,7 +288,7 @@ class World {
     // `visible` receives the answer; null if it surely is not the receivers' result.
     [[nodiscard]] Result<void> check_receivers(const ViewRequest& request, const ViewResult* visible,
                                                std::uint64_t item) const;
-    // Of the World's own objects.
+    // View the World's own objects, without those of regions.
     void view_own(const ViewRequest& request, const world::Eye& eye, ViewResult& visible, Executor& executor) const;
     [[nodiscard]] Result<void> view_own(std::span<const ViewRequest> requests, std::span<const world::Eye> eyes,
                                         MultiViewResult& visible, Executor& executor) const;
