@@ -254,7 +254,7 @@ TEST_SUITE("boxtree/box_tree changes") {
         CHECK(!BoxTree::build(crowd.boxes, {.room = std::size_t{1} << 30}).has_value());
     }
 
-    TEST_CASE("a node as it was built gets one leaf more; then an item that splits a full leaf joins the nearer half") {
+    TEST_CASE("a node as it was built gets one leaf more, and an item that splits a full leaf joins the nearer half") {
         for (const double at : {0.5, 100.5})
             for (const bool swapped : {false, true}) {
                 std::vector<Obb> boxes(16);
