@@ -4,6 +4,7 @@
 
 #include <hwy/targets.h>
 #include <algorithm>
+#include <array>
 
 #include "surfaces.hpp"
 
@@ -139,6 +140,34 @@ TEST_SUITE("convex/straight_cast") {
             ++told[gap > 0.0 ? 0 : 1];
         }
         CHECK(told[0] == told[1]);
+    }
+
+    TEST_CASE("of triangles hit at one time the least number counts, in whatever order they stand") {
+        RandomShapes random(15);
+        int hits = 0;
+        for (int round = 0; round < 600; ++round) {
+            Surface s = ground(random, 8, 0.2, [&](double, double) { return random.number(-0.1, 0.1); });
+            // Each triangle three times, at random numbers.
+            std::vector<std::array<std::uint32_t, 3>> triangles;
+            for (std::size_t i = 0; i < 3 * s.mesh.indices.size(); i += 3) {
+                const std::uint32_t* const corner = &s.mesh.indices[i % s.mesh.indices.size()];
+                triangles.push_back({corner[0], corner[1], corner[2]});
+            }
+            for (std::size_t i = triangles.size() - 1; i > 0; --i)
+                std::swap(triangles[i], triangles[static_cast<std::size_t>(random.index(static_cast<int>(i) + 1))]);
+            s.mesh.indices.clear();
+            for (const auto& t : triangles) s.mesh.indices.insert(s.mesh.indices.end(), t.begin(), t.end());
+            s.build();
+            const Shape shape = round % 2 == 0 ? Shape::sphere(0.3f).value() : Shape::capsule(0.3f, 0.2f).value();
+            const Flight f = fly(random, s, shape, 5.0, 0.0);
+            const Impact i =
+                cast({s.shape(), f.surface}, f.of_surface, {shape, f.shape}, f.of_shape, {.tolerance = 1e-4}).value();
+            if (i.result != CastResult::hit || i.time == 0.0) continue;
+            ++hits;
+            const std::uint32_t hit = i.part_a.triangle;
+            CHECK(std::find(triangles.begin(), triangles.end(), triangles[hit]) - triangles.begin() == hit);
+        }
+        CHECK(hits > 200);
     }
 
     TEST_CASE("a straight cast tells the same bits on every instruction set") {

@@ -18,7 +18,8 @@ struct Contact {
     double distance = 0.0;  // negative: how deep they overlap
     double lower = 0.0;     // proven
     glm::dvec3 normal{0.0}, on_a{0.0}, on_b{0.0};
-    bool closed = false;  // in closed form
+    bool closed = false;       // in closed form
+    double within = HUGE_VAL;  // else: how far they are apart at most, where that is known
 };
 Contact contact_of(const Distance& d) {
     return {d.distance, d.lower, d.normal, d.on_a, d.on_b};
@@ -52,7 +53,8 @@ bool triangle_contact(const ShapeAtPose& triangle, const ShapeAtPose& other, Con
     const Warm warm =
         kind == Kind::box
             ? BoxTouch(other, origin, reach, HUGE_VAL).ask(placed_corners(corners, triangle.pose, origin), touch)
-            : SegmentTouch(other, origin, reach, HUGE_VAL).ask(placed_triangle(corners, triangle.pose, origin), touch);
+            : SegmentTouch(other, origin, reach, HUGE_VAL)
+                  .ask(placed_triangle(corners, triangle.pose, origin), touch, &contact.within);
     if (warm != Warm::touching) return false;
     const Pair pair(triangle, other);
     contact.distance = -touch.depth;
@@ -129,6 +131,10 @@ Contact Advancement::nearest(double near, bool& reached) {
     const ShapeAtPose a = flight_.a(), b = flight_.b();
     Contact closed;
     if (contact_in_closed_form(a, b, closed)) return closed;
+    if (closed.within <= near) {
+        reached = true;
+        return {};
+    }
     if (is_half_space(a) || is_half_space(b)) {
         const Distance d = distance(a, b);
         reached = d.distance <= near;

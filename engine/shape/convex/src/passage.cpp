@@ -118,7 +118,9 @@ void Passage::cut(const glm::dvec3 (&p)[3], const glm::dvec3& axis, Stretch& met
 Passage::Entry Passage::entry(const Triangle& corners, double until) const {
     glm::dvec3 p[3];
     for (std::size_t v = 0; v < 3; ++v) p[v] = to_box_ * (corners[v] - box_.center);
-    Stretch met{from_ - middle_, std::min(until, to_) - middle_};
+    // Rounding leaves out no triangle that comes at `until` itself: of those alike the least number counts.
+    const double last = std::min(until, to_) - middle_;
+    Stretch met{from_ - middle_, last + 0x1p-50 * (std::abs(last) + std::abs(middle_))};
     for (int k = 0; k < 3; ++k) {
         const double reach = box_.half[k] + radius_ + left_;
         met.cut(std::min(p[0][k], std::min(p[1][k], p[2][k])) - reach,

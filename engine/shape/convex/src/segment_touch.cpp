@@ -19,12 +19,6 @@ struct NearestPair {
     double squared = std::numeric_limits<double>::infinity();
     glm::dvec3 on_triangle{0.0}, on_segment{0.0};
     Feature of_triangle{}, of_segment{};
-
-    void offer(const glm::dvec3& p, const glm::dvec3& q, const Feature& a, const Feature& b) {
-        const glm::dvec3 way = q - p;
-        const double d = glm::dot(way, way);
-        if (d < squared) *this = {d, p, q, a, b};
-    }
 };
 
 double clamped(double s) {
@@ -57,9 +51,16 @@ void offer_edges(NearestPair& best, const PlacedTriangle& t, const glm::dvec3 (&
     best.of_segment = end_feature(0);
 }
 
+// Of an end of the segment above the face.
+void offer_face(NearestPair& best, const glm::dvec3& p, const glm::dvec3& q, int end) {
+    const glm::dvec3 way = q - p;
+    if (const double squared = glm::dot(way, way); squared < best.squared)
+        best = {squared, p, q, kFace, end_feature(end)};
+}
+
 // Of edge k of the triangle, from p along u, and the segment from q along v; v may be 0.
 void offer_edge(NearestPair& best, int k, const glm::dvec3& p, const glm::dvec3& u, const glm::dvec3& q,
-                const glm::dvec3& v, int ends) {
+                const glm::dvec3& v) {
     const glm::dvec3 r = p - q;
     const double uu = glm::dot(u, u), vv = glm::dot(v, v), uv = glm::dot(u, v), ur = glm::dot(u, r),
                  vr = glm::dot(v, r);
@@ -67,11 +68,11 @@ void offer_edge(NearestPair& best, int k, const glm::dvec3& p, const glm::dvec3&
     double s = whole > 0.0 ? clamped((uv * vr - ur * vv) / whole) : 0.0;
     const double t = vv > 0.0 ? clamped((uv * s + vr) / vv) : 0.0;
     s = uu > 0.0 ? clamped((uv * t - ur) / uu) : 0.0;
-    const Feature on_edge = feature_of_edge(k, s);
-    const Feature on_segment = ends == 1 || t == 0.0 ? end_feature(0)
-                               : t == 1.0            ? end_feature(1)
-                                                     : Feature{FeatureKind::edge, 0};
-    best.offer(p + s * u, q + t * v, on_edge, on_segment);
+    const glm::dvec3 on_edge = p + s * u, on_segment = q + t * v, way = on_segment - on_edge;
+    const double squared = glm::dot(way, way);
+    if (!(squared < best.squared)) return;
+    const Feature of_segment = t == 0.0 ? end_feature(0) : t == 1.0 ? end_feature(1) : Feature{FeatureKind::edge, 0};
+    best = {squared, on_edge, on_segment, feature_of_edge(k, s), of_segment};
 }
 
 }  // namespace
@@ -98,7 +99,7 @@ SegmentTouch::SegmentTouch(const ShapeAtPose& shape, const glm::dvec3& origin, d
     doubt_ = kRoundedDoubt * size + 2.0 * error_;
 }
 
-Warm SegmentTouch::ask(const PlacedTriangle& t, Touch& touch) const {
+Warm SegmentTouch::ask(const PlacedTriangle& t, Touch& touch, double* gap) const {
     if (t.normal == glm::dvec3(0.0) || !(error_ < std::numeric_limits<double>::infinity())) return Warm::unknown;
     const glm::dvec3 edge[3] = {t.corner[1] - t.corner[0], t.corner[2] - t.corner[1], t.corner[0] - t.corner[2]};
     // The corners of a sliver are not quite on its rounded plane.
@@ -112,12 +113,12 @@ Warm SegmentTouch::ask(const PlacedTriangle& t, Touch& touch) const {
         double inward[3];
         for (int k = 0; k < 3; ++k) inward[k] = glm::dot(glm::cross(edge[k], end_[i] - t.corner[k]), t.normal);
         if (inward[0] >= 0.0 && inward[1] >= 0.0 && inward[2] >= 0.0)
-            best.offer(end_[i] - height[i] * t.normal, end_[i], kFace, end_feature(i));
+            offer_face(best, end_[i] - height[i] * t.normal, end_[i], i);
         else if (count_ == 1)
             offer_edges(best, t, edge, inward, end_[i]);
     }
     if (count_ > 1)
-        for (int k = 0; k < 3; ++k) offer_edge(best, k, t.corner[k], edge[k], end_[0], end_[1] - end_[0], count_);
+        for (int k = 0; k < 3; ++k) offer_edge(best, k, t.corner[k], edge[k], end_[0], end_[1] - end_[0]);
     const double distance = std::sqrt(best.squared);
     // Nearer than this the direction is rounding.
     if (!(distance > 0x1p16 * error_)) return Warm::unknown;
@@ -128,7 +129,11 @@ Warm SegmentTouch::ask(const PlacedTriangle& t, Touch& touch) const {
                  std::max(glm::dot(n, t.corner[1] - best.on_triangle), glm::dot(n, t.corner[2] - best.on_triangle)));
     if (lower - doubt_ > limit_) return Warm::apart;
     // Whether shapes as near to a touch as this meet is left to the search that decides it for all queries.
-    if (!(distance - lower <= 64.0 * error_) || std::abs(distance - radius_) <= doubt_) return Warm::unknown;
+    if (!(distance - lower <= 64.0 * error_)) return Warm::unknown;
+    if (std::abs(distance - radius_) <= doubt_) {
+        if (gap != nullptr) *gap = distance - radius_ + 64.0 * error_;
+        return Warm::unknown;
+    }
     touch.normal = n;
     touch.depth = radius_ - distance;
     touch.on_a = best.on_triangle;

@@ -53,7 +53,9 @@ class BoxTouch {
 class SegmentTouch {
   public:
     SegmentTouch(const ShapeAtPose& shape, const glm::dvec3& origin, double reach, double margin);
-    [[nodiscard]] Warm ask(const PlacedTriangle& triangle, Touch& touch) const;
+    // `gap` is set where the shapes are too near to a touch to tell whether they meet: no more than that is between
+    // them.
+    [[nodiscard]] Warm ask(const PlacedTriangle& triangle, Touch& touch, double* gap = nullptr) const;
 
   private:
     glm::dvec3 end_[2];
