@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <crofton/mesh/box_hierarchy.hpp>
 #include <random>
+#include <span>
 #include <vector>
 
 using namespace crofton;
@@ -55,6 +56,11 @@ int check(const BoxHierarchy& tree, std::span<const FloatBox> boxes, std::uint32
     return *std::max_element(depth.begin(), depth.end());
 }
 
+BoxHierarchy build(std::span<const FloatBox> boxes, std::uint32_t leaf_size, std::uint32_t granule = 1) {
+    return build_box_hierarchy(
+        boxes.size(), [&](std::size_t i) { return boxes[i]; }, leaf_size, granule);
+}
+
 FloatBox around(const glm::vec3& p) {
     FloatBox box;
     box.include(p);
@@ -75,7 +81,7 @@ TEST_SUITE("mesh/box_hierarchy") {
                     boxes.back().include({unit(random), unit(random), unit(random)});
                 }
                 for (const std::uint32_t granule : {1u, leaf_size})
-                    CHECK(check(build_box_hierarchy(boxes, leaf_size, granule), boxes, leaf_size) <= 8);
+                    CHECK(check(build(boxes, leaf_size, granule), boxes, leaf_size) <= 8);
             }
     }
 
@@ -88,7 +94,7 @@ TEST_SUITE("mesh/box_hierarchy") {
             boxes.push_back(around({x, y, 0.01f * x * y}));
             boxes.back().include({x + unit(random), y + unit(random), 0.01f * x * y + unit(random)});
         }
-        const BoxHierarchy tree = build_box_hierarchy(boxes, 8, 8);
+        const BoxHierarchy tree = build(boxes, 8, 8);
         CHECK(check(tree, boxes, 8) <= 8);
         CHECK(tree.leaves.size() < 20000 / 8 * 1.05);
         CHECK(tree.nodes.size() < tree.leaves.size() / 4);  // each node less the root takes a lane: 5 lanes and more
@@ -104,7 +110,7 @@ TEST_SUITE("mesh/box_hierarchy") {
         }
         for (int trial = 0; trial < 10; ++trial) {
             std::shuffle(boxes.begin(), boxes.end(), random);
-            const BoxHierarchy tree = build_box_hierarchy(boxes, 11);
+            const BoxHierarchy tree = build(boxes, 11);
             REQUIRE(tree.nodes.size() == 1);
             REQUIRE(tree.nodes[0].count == 2);
             for (std::uint32_t lane = 0; lane < 2; ++lane) {
@@ -116,16 +122,16 @@ TEST_SUITE("mesh/box_hierarchy") {
 
     TEST_CASE("boxes in one place, and a geometric series of places, make no deep tree") {
         const std::vector<FloatBox> same(100000, around(glm::vec3(1.0f)));
-        CHECK(check(build_box_hierarchy(same, 1), same, 1) <= 20);
-        CHECK(build_box_hierarchy(same, 8, 8).leaves.size() == same.size() / 8);
+        CHECK(check(build(same, 1), same, 1) <= 20);
+        CHECK(build(same, 8, 8).leaves.size() == same.size() / 8);
         std::vector<FloatBox> closest;  // so close that the width has no finite reciprocal
         for (int i = 0; i < 100; ++i) closest.push_back(around(glm::vec3(static_cast<float>(i % 3) * 1.5e-45f)));
-        CHECK(check(build_box_hierarchy(closest, 1), closest, 1) <= 10);
-        CHECK(check(build_box_hierarchy(closest, 8, 8), closest, 8) <= 10);
+        CHECK(check(build(closest, 1), closest, 1) <= 10);
+        CHECK(check(build(closest, 8, 8), closest, 8) <= 10);
         std::vector<FloatBox> series;
         for (float x = 1e-37f; x < 1e37f; x *= 1.001f) series.push_back(around(glm::vec3(x, 0.0f, -x)));
         CHECK(series.size() > 100000);
-        CHECK(check(build_box_hierarchy(series, 1), series, 1) <= BoxHierarchy::kMaxDepth);
-        CHECK(check(build_box_hierarchy(series, 8, 8), series, 8) <= BoxHierarchy::kMaxDepth);
+        CHECK(check(build(series, 1), series, 1) <= BoxHierarchy::kMaxDepth);
+        CHECK(check(build(series, 8, 8), series, 8) <= BoxHierarchy::kMaxDepth);
     }
 }

@@ -36,10 +36,12 @@ void build_tracer(const TriangleMesh& mesh, const glm::dvec3& origin, Vector<mes
     Vector<glm::vec3> points;
     points.reserve(mesh.positions.size());
     for (const glm::vec3& p : mesh.positions) points.emplace_back(glm::dvec3(p) - origin);
-    Vector<FloatBox> boxes(mesh.triangle_count());
-    for (std::size_t t = 0; t < boxes.size(); ++t)
-        for (std::size_t k = 0; k < 3; ++k) boxes[t].include(points[mesh.indices[3 * t + k]]);
-    BoxHierarchy tree = mesh::build_box_hierarchy(boxes, kLanes);
+    const auto box_of = [&](std::size_t t) {
+        FloatBox box;
+        for (std::size_t k = 0; k < 3; ++k) box.include(points[mesh.indices[3 * t + k]]);
+        return box;
+    };
+    BoxHierarchy tree = mesh::build_box_hierarchy(mesh.triangle_count(), box_of, kLanes);
     nodes = std::move(tree.nodes);
     leaves.reserve(tree.leaves.size());
     const std::span<const std::uint32_t> order(tree.order);

@@ -2,6 +2,7 @@
 #include "partition.hpp"
 
 #include <algorithm>
+#include <crofton/core/rank.hpp>
 #include <utility>
 
 namespace crofton::boxtree {
@@ -297,20 +298,6 @@ float spread_of(const float (&values)[kWidth]) {
            std::min({float{low[0]}, float{low[1]}, float{low[2]}, float{low[3]}});
 }
 
-using Ranks = std::uint32_t[kWidth];
-
-// How many values come before each; equal ones keep their order. Without branches, so that vectors do it.
-void rank(const float (&values)[kWidth], Ranks& ranks) {
-    std::fill_n(ranks, kWidth, 0u);
-    for (unsigned j = 0; j < kWidth; ++j)
-        for (unsigned i = 0; i < kWidth; ++i) ranks[i] += static_cast<std::uint32_t>(values[j] < values[i]);
-    std::uint32_t sum = 0;
-    for (const std::uint32_t before : ranks) sum += before;
-    const bool has_equal = sum != kWidth * (kWidth - 1) / 2;
-    for (unsigned j = 0; has_equal && j < kWidth; ++j)
-        for (unsigned i = j + 1; i < kWidth; ++i) ranks[i] += static_cast<std::uint32_t>(values[j] == values[i]);
-}
-
 }  // namespace
 
 void halve(std::span<BuildItem, kWidth> items) {
@@ -322,15 +309,15 @@ void halve(std::span<BuildItem, kWidth> items) {
         const float spread = spread_of(centers[axis]);
         if (spread > most) most = spread, widest = axis;
     }
-    Ranks along_x, along_widest;
-    rank(centers[0], along_x);
-    if (widest != 0) rank(centers[widest], along_widest);
-    const Ranks& halves = widest != 0 ? along_widest : along_x;
+    std::int32_t along_x[kWidth], along_widest[kWidth];
+    detail::rank<kWidth>(centers[0], along_x);
+    if (widest != 0) detail::rank<kWidth>(centers[widest], along_widest);
+    const std::int32_t* const halves = widest != 0 ? along_widest : along_x;
     std::uint32_t in_order[kWidth];  // along x
-    for (unsigned i = 0; i < kWidth; ++i) in_order[along_x[i]] = i;
+    for (unsigned i = 0; i < kWidth; ++i) in_order[static_cast<std::size_t>(along_x[i])] = i;
     std::array<BuildItem, kWidth> result;
     unsigned first = 0, second = kWidth / 2;
-    for (const std::uint32_t i : in_order) result[halves[i] < kWidth / 2 ? first++ : second++] = items[i];
+    for (const std::uint32_t i : in_order) result[halves[i] < std::int32_t{kWidth / 2} ? first++ : second++] = items[i];
     std::copy(result.begin(), result.end(), items.begin());
 }
 

@@ -4,6 +4,7 @@
 #include <hwy/cache_control.h>
 #include <algorithm>
 #include <array>
+#include <crofton/core/rank.hpp>
 #include <crofton/geometry/float_lanes.hpp>
 #include <cstring>
 #include <limits>
@@ -104,14 +105,8 @@ using SplitOrder = std::array<std::uint8_t, kSplitCount>;
 
 // The order of the first seventeen keys; equal ones keep theirs.
 void put_in_order(const float (&keys)[kSplitPadded], SplitOrder& order) {
-    // Each one's place is how many come before it: no branch to guess, and vectors of four.
-    std::int32_t places[kSplitPadded] = {}, sum = 0;
-    for (std::size_t m = 0; m < kSplitCount + 1; ++m)  // an even number: two at a time; the last is infinite
-        for (std::size_t n = 0; n < kSplitPadded; ++n) places[n] += static_cast<std::int32_t>(keys[m] < keys[n]);
-    for (std::size_t n = 0; n < kSplitCount; ++n) sum += places[n];
-    const bool has_equal = sum != static_cast<std::int32_t>(kSplitCount * (kSplitCount - 1) / 2);
-    for (std::size_t m = 0; has_equal && m < kSplitCount; ++m)
-        for (std::size_t n = m + 1; n < kSplitCount; ++n) places[n] += static_cast<std::int32_t>(keys[m] == keys[n]);
+    std::int32_t places[kSplitPadded];
+    detail::rank<kSplitCount>(keys, places);
     for (std::size_t n = 0; n < kSplitCount; ++n)
         order[static_cast<std::size_t>(places[n])] = static_cast<std::uint8_t>(n);
 }

@@ -5,8 +5,8 @@
 #include <array>
 #include <bit>
 #include <crofton/geometry/float_lanes.hpp>
-#include <glm/common.hpp>
 #include <limits>
+#include <span>
 #include <utility>
 
 namespace crofton::mesh {
@@ -92,12 +92,13 @@ FloatBox narrow(const WideBox& box) {
 
 class Splitter {
   public:
-    Splitter(std::span<const FloatBox> boxes, std::uint32_t leaf_size, std::uint32_t granule)
-        : leaf_size_(leaf_size), granule_(granule), order_(boxes.size()) {
-        for (Vector<WideBox>& items : items_) items.resize(boxes.size());
-        for (std::size_t i = 0; i < boxes.size(); ++i) {
+    Splitter(std::size_t count, BoxOfItem box_of, std::uint32_t leaf_size, std::uint32_t granule)
+        : leaf_size_(leaf_size), granule_(granule), order_(count) {
+        for (Vector<WideBox>& items : items_) items.resize(count);
+        for (std::size_t i = 0; i < count; ++i) {
+            const FloatBox box = box_of(i);
             WideBox& item = items_[0][i];
-            for (int k = 0; k < 3; ++k) item.low[k] = boxes[i].low[k], item.high[k] = boxes[i].high[k];
+            for (int k = 0; k < 3; ++k) item.low[k] = box.low[k], item.high[k] = box.high[k];
             item.low[3] = std::bit_cast<float>(static_cast<std::uint32_t>(i) | kItemBit);
         }
     }
@@ -154,7 +155,8 @@ class Splitter {
         } else if (granule_ > 1 && range.size() <= kMostFew) {
             part_few(range, left, right);
         } else if (best_plane(range, plane)) {
-            const std::uint32_t cut = whole_granules(range.size(), plane.below);
+            const std::uint32_t cut =
+                range.size() > kMostAligned ? plane.below : whole_granules(range.size(), plane.below);
             if (cut == plane.below || cost_of_moving(range, plane, cut) > kDearer * plane.cost)
                 part(range, plane.below, left, right,
                      [&](std::uint32_t, const WideBox& item) { return !plane.is_above(item); });
@@ -422,7 +424,8 @@ class Splitter {
     }
 
     static constexpr std::uint32_t kMostFew = 32;
-    static constexpr double kDearer = 1.25;  // so much may whole granules cost
+    static constexpr std::uint32_t kMostAligned = 1024;  // a leaf that is not full is one of many above that
+    static constexpr double kDearer = 1.25;              // so much may whole granules cost
     std::uint32_t leaf_size_, granule_;
     Vector<WideBox> items_[2];  // a range is in one of them, and its halves in the other
     Vector<std::uint32_t> order_;
@@ -519,16 +522,6 @@ class Collapse {
 
 }  // namespace
 
-void FloatBox::include(const glm::vec3& point) {
-    low = glm::min(low, point);
-    high = glm::max(high, point);
-}
-
-void FloatBox::include(const FloatBox& box) {
-    low = glm::min(low, box.low);
-    high = glm::max(high, box.high);
-}
-
 void set_bounds(BoxNode& node, std::uint32_t lane, const FloatBox& box) {
     for (int i = 0; i < 3; ++i) {
         node.bounds[i][lane] = box.low[i];
@@ -536,8 +529,8 @@ void set_bounds(BoxNode& node, std::uint32_t lane, const FloatBox& box) {
     }
 }
 
-BoxHierarchy build_box_hierarchy(std::span<const FloatBox> boxes, std::uint32_t leaf_size, std::uint32_t granule) {
-    Splitter splitter(boxes, leaf_size, granule);
+BoxHierarchy build_box_hierarchy(std::size_t count, BoxOfItem box_of, std::uint32_t leaf_size, std::uint32_t granule) {
+    Splitter splitter(count, box_of, leaf_size, granule);
     const Vector<BinaryNode> binary = splitter.split();
     BoxHierarchy result;
     Collapse(binary).run(result);

@@ -53,9 +53,9 @@ MeshBox box_with(std::span<const glm::vec3> points, const glm::dmat3& frame) {
 }
 
 // Principal axes, that of the least spread first.
-glm::dmat3 principal_axes(std::span<const glm::vec3> points) {
+glm::dmat3 principal_axes(std::span<const glm::vec3> points, int sweeps) {
     const glm::dmat3 covariance = covariance_of(points.size(), [&](std::size_t i) { return points[i]; });
-    glm::dmat3 frame = eigenvectors(covariance);
+    glm::dmat3 frame = eigenvectors(covariance, sweeps);
     std::array<double, 3> spread;
     for (int k = 0; k < 3; ++k) spread[static_cast<std::size_t>(k)] = glm::dot(frame[k], covariance * frame[k]);
     const auto put_in_order = [&](int i, int j) {
@@ -129,14 +129,17 @@ void MeshBoxFitter::turn(std::span<const glm::vec3> points, int axis, glm::dmat3
     frame[(axis + 2) % 3] = best.c * y - best.s * x;
 }
 
-MeshBox MeshBoxFitter::fit(std::span<const glm::vec3> points, MeshBoxes boxes) {
+MeshBox MeshBoxFitter::fit(std::span<const glm::vec3> points, MeshBoxes boxes, bool by_all) {
     if (boxes == MeshBoxes::least_perimeter)
         if (const auto box = fit::fit_obb(points)) return box_with(points, glm::dmat3(box->axes));
-    glm::dmat3 frame = principal_axes(points);
+    sample_.clear();
+    const std::size_t step = by_all ? 1 : sample_step(points.size());
+    for (std::size_t i = 0; i < points.size(); i += step) sample_.push_back(points[i]);
+    glm::dmat3 frame = principal_axes(sample_, by_all || boxes == MeshBoxes::principal_axes ? 4 : 2);
     if (boxes == MeshBoxes::small_perimeter) {
-        u_.resize(points.size());
-        v_.resize(points.size());
-        for (int axis = 0; axis < 3; ++axis) turn(points, axis, frame);
+        u_.resize(sample_.size());
+        v_.resize(sample_.size());
+        for (int axis = 0; axis < 3; ++axis) turn(sample_, axis, frame);
     }
     return box_with(points, frame);
 }

@@ -68,7 +68,7 @@ class MeshTreeBuilder {
     void bunch_triangles();
     void split_node(const Task& task);
     Part split(Part& part);
-    MeshBox fit(const Range& range);
+    MeshBox fit(const Range& range, bool by_all = false);
     std::uint32_t add_leaf(std::uint32_t bunch);
     [[nodiscard]] std::span<const std::uint32_t> triangles_of(std::uint32_t bunch) const {
         const BoxHierarchy::Leaf& leaf = hierarchy_.leaves[bunch];
@@ -134,10 +134,12 @@ void MeshTreeBuilder::collect() {
 // Triangles whose aligned boxes together are small make a leaf: rays, and whatever else comes from a direction that
 // nobody knows, meet it in proportion to its surface. All leaves are full but one.
 void MeshTreeBuilder::bunch_triangles() {
-    Vector<FloatBox> boxes(triangles_.size());
-    for (std::size_t i = 0; i < boxes.size(); ++i)
-        for (std::size_t v = 0; v < 3; ++v) boxes[i].include(vertex(triangles_[i], v));
-    hierarchy_ = build_box_hierarchy(boxes, kMeshLeafWidth, kMeshLeafWidth);
+    const auto box_of = [&](std::size_t i) {
+        FloatBox box;
+        for (std::size_t v = 0; v < 3; ++v) box.include(vertex(triangles_[i], v));
+        return box;
+    };
+    hierarchy_ = build_box_hierarchy(triangles_.size(), box_of, kMeshLeafWidth, kMeshLeafWidth);
     for (std::uint32_t& item : hierarchy_.order) item = triangles_[item];
     bunches_.reserve(hierarchy_.leaves.size());
     first_vertex_.reserve(hierarchy_.leaves.size() + 1);
@@ -164,9 +166,10 @@ Part MeshTreeBuilder::split(Part& part) {
     const Range range = part.range;
     const auto begin = bunches_.begin() + static_cast<std::ptrdiff_t>(range.begin);
     const auto end = bunches_.begin() + static_cast<std::ptrdiff_t>(range.end);
-    const glm::dmat3 covariance =
-        covariance_of(range.size(), [&](std::size_t i) { return begin[static_cast<std::ptrdiff_t>(i)].centroid; });
-    const glm::dmat3 frame = eigenvectors(covariance);
+    const std::size_t step = sample_step(range.size());
+    const glm::dmat3 covariance = covariance_of(
+        range.size() / step, [&](std::size_t i) { return begin[static_cast<std::ptrdiff_t>(i * step)].centroid; });
+    const glm::dmat3 frame = eigenvectors(covariance, 2);
     int longest = 0;
     double spread = -1.0;
     for (int k = 0; k < 3; ++k) {
@@ -185,22 +188,23 @@ Part MeshTreeBuilder::split(Part& part) {
     return upper;
 }
 
-MeshBox MeshTreeBuilder::fit(const Range& range) {
+MeshBox MeshTreeBuilder::fit(const Range& range, bool by_all) {
     ++range_number_;
     points_.clear();
     point_vertices_.clear();
     for (std::size_t b = range.begin; b < range.end; ++b)
-        for (std::uint32_t i = first_vertex_[bunches_[b].number]; i < first_vertex_[bunches_[b].number + 1]; ++i)
-            if (const Vertex& vertex = bunch_vertices_[i]; is_new(vertex.index)) {
-                points_.push_back(vertex.position);
-                if (options_.refittable) point_vertices_.push_back(vertex.index);
-            }
-    return fitter_.fit(points_, options_.boxes);
+        for (std::uint32_t i = first_vertex_[bunches_[b].number]; i < first_vertex_[bunches_[b].number + 1]; ++i) {
+            const Vertex& vertex = bunch_vertices_[i];
+            if (range.size() > 1 && !is_new(vertex.index)) continue;  // a bunch has each once
+            points_.push_back(vertex.position);
+            if (options_.refittable) point_vertices_.push_back(vertex.index);
+        }
+    return fitter_.fit(points_, options_.boxes, by_all);
 }
 
 std::uint32_t MeshTreeBuilder::add_leaf(std::uint32_t bunch) {
-    MeshLeaf leaf{};
-    LeafVertices vertices{};
+    MeshLeaf& leaf = made().leaves.emplace_back();
+    LeafVertices* const vertices = options_.refittable ? &made().refit.leaves.emplace_back() : nullptr;
     const std::span<const std::uint32_t> triangles = triangles_of(bunch);
     leaf.count = static_cast<std::uint32_t>(triangles.size());
     for (std::size_t lane = 0; lane < kMeshLeafWidth; ++lane) {
@@ -208,12 +212,11 @@ std::uint32_t MeshTreeBuilder::add_leaf(std::uint32_t bunch) {
         leaf.triangle[lane] = triangle;
         leaf.piece[lane] = piece_of_[triangle];
         for (std::size_t v = 0; v < 3; ++v) {
-            vertices.vertex[v][lane] = mesh_.indices[3 * std::size_t{triangle} + v];
-            for (int i = 0; i < 3; ++i) leaf.vertex[v][i][lane] = vertex(triangle, v)[i];
+            const glm::vec3& p = vertex(triangle, v);
+            for (int i = 0; i < 3; ++i) leaf.vertex[v][i][lane] = p[i];
+            if (vertices != nullptr) vertices->vertex[v][lane] = mesh_.indices[3 * std::size_t{triangle} + v];
         }
     }
-    made().leaves.push_back(leaf);
-    if (options_.refittable) made().refit.leaves.push_back(vertices);
     return leaf_of_[bunch] = static_cast<std::uint32_t>(made().leaves.size() - 1);
 }
 
@@ -297,7 +300,7 @@ Result<MeshTree> MeshTreeBuilder::build() {
     made().leaves.reserve(bunches_.size());
     if (options_.refittable) made().refit.leaves.reserve(bunches_.size());
     const Range all{0, bunches_.size()};
-    made().root_box = fit(all);
+    made().root_box = fit(all, true);  // depths are along its axes
     made().nodes.emplace_back();
     if (options_.refittable) {
         set_anchors(made().root_box, points_, point_vertices_, 0, made().refit.root);

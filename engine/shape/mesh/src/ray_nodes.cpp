@@ -36,11 +36,9 @@ FloatBox bounds_of(const BoxNode& node) {
 Result<void> MeshTree::prepare_rays() {
     if (parts().leaves.empty() || !parts().ray_nodes.empty()) return {};
     return detail::recover([&]() -> Result<void> {
-        Vector<FloatBox> boxes;
-        boxes.reserve(parts_->leaves.size());
-        for (const MeshLeaf& leaf : parts_->leaves) boxes.push_back(bounds_of(leaf));
-        BoxHierarchy tree = build_box_hierarchy(boxes, 1);
-        Vector<std::uint32_t> leaf_of(boxes.size());
+        const auto box_of = [&](std::size_t leaf) { return bounds_of(parts_->leaves[leaf]); };
+        BoxHierarchy tree = build_box_hierarchy(parts_->leaves.size(), box_of, 1);
+        Vector<std::uint32_t> leaf_of(parts_->leaves.size());
         for (std::size_t i = 0; i < leaf_of.size(); ++i) leaf_of[i] = tree.order[tree.leaves[i].begin];
         parts_->take_ray_nodes(std::move(tree.nodes), leaf_of);
         return {};
