@@ -94,8 +94,10 @@ Result<Region> Region::prepare(Strided<RegionObject> objects, const RegionOption
         if (auto done = read(objects, options, stop, contents); !done) return tl::unexpected(done.error());
         Region region;
         if (boxes.empty()) return region;
+        if (stop.is_raised(0.15)) return tl::unexpected(cancelled().error());
         auto tree = tree_over(boxes, layers, options, executor);
         if (!tree) return tl::unexpected(tree.error());
+        if (stop.is_raised(0.8)) return tl::unexpected(cancelled().error());
         auto data = Owner<world::RegionData>::make(std::move(*tree));
         data->items = std::move(contents.items);
         if (contents.solids) {
