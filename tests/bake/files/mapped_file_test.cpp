@@ -4,8 +4,11 @@
 #include <error_of.hpp>
 
 #include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -61,6 +64,29 @@ TEST_SUITE("bake/mapped_file") {
         CHECK(reinterpret_cast<std::uintptr_t>(read->bytes().data()) % 64 == 0);
         const MappedFile moved = std::move(*read);
         CHECK(moved.bytes()[99'999] == std::byte{7});
+    }
+
+    TEST_CASE("a file that is cut while it is mapped ends the program that reads it, and one that was read does not") {
+        const std::vector<std::byte> contents(100'000, std::byte{7});
+        for (const auto access : {crofton::bake::FileAccess::map, crofton::bake::FileAccess::read}) {
+            const crofton::bake_test::TemporaryFile file(contents);
+            const auto opened = MappedFile::open(file.path(), {.access = access});
+            REQUIRE(opened);
+            std::filesystem::resize_file(file.path(), 0);
+            const pid_t child = fork();
+            REQUIRE(child >= 0);
+            if (child == 0) {
+                std::signal(SIGBUS, SIG_DFL);
+                std::signal(SIGSEGV, SIG_DFL);
+                _exit(opened->bytes()[50'000] == std::byte{7} ? 0 : 1);
+            }
+            int status = 0;
+            REQUIRE(waitpid(child, &status, 0) == child);
+            if (access == crofton::bake::FileAccess::map)
+                CHECK((WIFSIGNALED(status) && WTERMSIG(status) == SIGBUS));
+            else
+                CHECK((WIFEXITED(status) && WEXITSTATUS(status) == 0));
+        }
     }
 
     TEST_CASE("a file beyond the limit and a pipe are refused at once, whichever way they are opened") {

@@ -2,15 +2,18 @@
 // Scenes split into regions, written, opened again and attached.
 #include <doctest/doctest.h>
 #include <algorithm>
+#include <atomic>
 #include <crofton/bake/container.hpp>
 #include <crofton/bake/region_files.hpp>
 #include <crofton/crofton.hpp>
 #include <error_of.hpp>
 #include <filesystem>
 #include <fstream>
+#include <glm/common.hpp>
 #include <map>
 #include <oracle/random_boxes.hpp>
 #include <set>
+#include <thread>
 #include <vector>
 
 #include "../../box_mesh.hpp"
@@ -265,6 +268,67 @@ TEST_SUITE("bake/region_files") {
         CHECK(tried > 2000);
         for (std::size_t size = 0; size < bytes.size(); size += 64)
             CHECK(!BakedScene::from_memory(std::span<const std::byte>(bytes).first(size)));
+    }
+
+    TEST_CASE(
+        "files that are changed, cut, replaced and deleted change no answer of their regions, while rays are cast") {
+        const Town town(40);
+        const TemporaryFolder folder;
+        write_regions(town, SceneRegions::split(town.scene, 2, 2).value(), folder.path());
+        const Vector<RegionFile> index = open_region_index(folder.path()).value();
+        REQUIRE(index.size() == 4);
+        for (const FileAccess access : {FileAccess::map, FileAccess::read}) {
+            const TemporaryFolder copy;
+            std::filesystem::copy(folder.path(), copy.path(), std::filesystem::copy_options::recursive);
+            World world({.pairs = false});
+            for (const RegionFile& file : index) {
+                const auto region = open_region(copy.path(), file, {}, {.access = access});
+                REQUIRE(region);
+                world.attach(*region, file.origin).value();
+            }
+            world.update().value();
+            oracle::NearMisses random(80);
+            std::vector<Ray> rays(200);
+            for (Ray& ray : rays) {
+                const RegionFile& file = index[random.index(4)];
+                ray.origin = file.origin + file.bounds.min - 5.0;
+                const double u = random.number(0.0, 1.0), v = random.number(0.0, 1.0), w = random.number(0.0, 1.0);
+                ray.direction =
+                    file.origin + glm::mix(file.bounds.min, file.bounds.max, glm::dvec3(u, v, w)) - ray.origin;
+            }
+            const auto cast = [&] {
+                std::vector<double> found;
+                for (const Ray& ray : rays) {
+                    const auto hit = world.raycast(ray);
+                    found.push_back(hit ? hit->t : -1.0);
+                }
+                return found;
+            };
+            const std::vector<double> expected = cast();
+            CHECK(std::count(expected.begin(), expected.end(), -1.0) < 150);
+            std::atomic<bool> done = false;
+            std::atomic<int> wrong = 0, rounds = 0;
+            std::thread asks([&] {
+                do {
+                    wrong += cast() != expected;
+                    ++rounds;
+                } while (!done);
+            });
+            const auto path = [&](std::size_t i) { return copy.path() + "/" + index[i].name; };
+            {
+                std::fstream changed(path(0), std::ios::binary | std::ios::in | std::ios::out);
+                for (std::uint64_t i = 0; i < index[0].bytes; ++i) changed.put('\x5a');
+            }
+            std::filesystem::resize_file(path(1), 0);
+            std::filesystem::copy_file(folder.path() + "/" + index[0].name, path(2),
+                                       std::filesystem::copy_options::overwrite_existing);
+            std::filesystem::remove(path(3));
+            for (const int before = rounds; rounds < before + 3;) std::this_thread::yield();
+            done = true;
+            asks.join();
+            CHECK(wrong == 0);
+            for (const RegionFile& file : index) CHECK(!open_region(copy.path(), file, {}, {.access = access}));
+        }
     }
 
     TEST_CASE("the code of docs/large_worlds.md opens a region of a folder") {

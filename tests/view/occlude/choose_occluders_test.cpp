@@ -176,6 +176,58 @@ TEST_SUITE("occlude/choose_occluders") {
         CHECK(choice.ids == Vector<std::uint32_t>{0, 2});
     }
 
+    TEST_CASE(
+        "candidates that get limits, lose them and get others are used where their limits allow it, also once "
+        "cleared") {
+        std::mt19937_64 random(12);
+        const auto random_limits = [&](OccluderCandidate& candidate) {
+            EyeLimits& limits = candidate.limits;
+            limits = {};
+            if (random() % 3 == 0) return;
+            limits.left_out_within = {20.0 * random_vector(random) - 60.0, 20.0 * random_vector(random) + 60.0};
+            const auto plane = [&] { return Plane{random_vector(random), 2.0 * random_vector(random).x}; };
+            if (random() % 2) limits.piece_sides[limits.piece_side_count++] = plane();
+            if (random() % 3 == 0) limits.planes[limits.plane_count++] = plane();
+        };
+        OccluderCandidates candidates;
+        std::size_t used = 0, left_out = 0;
+        for (int life = 0; life < 3; ++life) {
+            candidates.clear();
+            std::vector<OccluderCandidate> given;
+            for (int i = 0; i < 600; ++i) {
+                given.push_back(random_candidate(random, glm::dvec3(0.0)));
+                random_limits(given.back());
+                REQUIRE(candidates.add(given.back()).has_value());
+            }
+            for (int step = 0; step < 10; ++step) {
+                for (int change = 0; change < 200; ++change) {
+                    const auto id = static_cast<std::uint32_t>(random() % given.size());
+                    random_limits(given[id]);
+                    REQUIRE(candidates.set(id, given[id]).has_value());
+                }
+                // Without limits all of them would be chosen, but for those that are worth nothing.
+                const Camera camera = random_camera(random, glm::dvec3(0.0));
+                const ChooseBudget budget{.max_occluders = 600, .max_edges = 1'000'000};
+                OccluderCandidates unlimited;
+                for (OccluderCandidate candidate : given) {
+                    candidate.limits = {};
+                    REQUIRE(unlimited.add(candidate).has_value());
+                }
+                OccluderChoice choice, all;
+                REQUIRE(choose_occluders(candidates, camera, budget, choice).has_value());
+                REQUIRE(choose_occluders(unlimited, camera, budget, all).has_value());
+                Vector<std::uint32_t> expected;
+                for (const std::uint32_t id : all.ids)
+                    if (may_use(given[id].limits, camera)) expected.push_back(id);
+                CHECK(choice.ids == expected);
+                used += expected.size();
+                left_out += all.ids.size() - expected.size();
+            }
+        }
+        CHECK(used > 300);
+        CHECK(left_out > 300);
+    }
+
     TEST_CASE("budgets hold, equals come by id, and a changed candidate counts as it is now") {
         OccluderCandidates candidates;
         Obb box;

@@ -838,6 +838,63 @@ TEST_SUITE("world/regions") {
         CHECK(last >= 0.0);
     }
 
+    TEST_CASE("preparing meshes, shapes and boxes stops at whichever question is answered yes, and leaves no memory") {
+        NearMisses random(78);
+        const Solids solids;
+        std::vector<RegionObject> objects = random_objects(random, 3000, 20.0);
+        for (std::size_t i = 0; i < objects.size(); i += 3) solids.change(random, objects[i], 20.0);
+        struct Asked {
+            int count = 0, stop_at = 0;
+        };
+        const auto prepare = [&](Asked& asked) {
+            const auto should_stop = [](void* user, double) {
+                Asked& its = *static_cast<Asked*>(user);
+                std::this_thread::sleep_for(std::chrono::milliseconds(6));  // it is asked again after 5
+                return ++its.count == its.stop_at;
+            };
+            return Region::prepare(objects, {.should_stop = should_stop, .stop_user = &asked, .meshes = solids.meshes});
+        };
+        Asked all;
+        REQUIRE(prepare(all).has_value());
+        REQUIRE(all.count == 7);  // before each of three meshes, the objects, the tree, what follows it, at the end
+        for (int stop_at = 1; stop_at <= all.count; ++stop_at) {
+            testing::CountingMemory memory;
+            {
+                Asked asked{.stop_at = stop_at};
+                const auto region = prepare(asked);
+                REQUIRE_FALSE(region);
+                CHECK(region.error().code == ErrorCode::cancelled);
+                CHECK(asked.count == stop_at);
+            }
+            CHECK(memory.bytes_in_use() == 0);
+        }
+    }
+
+    TEST_CASE("a region that is attached several times at one place, and others across it, answer as singles") {
+        NearMisses random(79);
+        TwoWorlds worlds;
+        const auto objects = random_objects(random, 300, 6.0), others = random_objects(random, 200, 6.0);
+        const Region region = Region::prepare(objects).value(), other = Region::prepare(others).value();
+        std::vector<RegionHandle> handles;
+        const glm::dvec3 far(1e9, -3.0, 0.1);
+        for (int copy = 0; copy < 3; ++copy) handles.push_back(worlds.attach(region, objects, far));
+        for (const double apart : {0.0, 0.5, 6.0}) worlds.attach(other, others, far + glm::dvec3(apart, 0.0, 0.0));
+        worlds.hide(handles[1], 7, true);
+        ViewResult visible;
+        MultiViewResult many;
+        const auto check = [&] {
+            worlds.update();
+            check_names(worlds);
+            check_views(worlds, random, far, visible, many);
+            for (int i = 0; i < 30; ++i) check_rays(worlds, random, far);
+            for (int i = 0; i < 5; ++i) check_shapes(worlds, random, far);
+        };
+        check();
+        worlds.detach(handles[0]);  // the others stay
+        check();
+        CHECK(worlds.with.object_count() == 2 * objects.size() + 3 * others.size());
+    }
+
     TEST_CASE("an empty region can be attached and detached, and has empty bounds") {
         World world;
         const Region empty = Region::prepare({}).value();

@@ -19,7 +19,7 @@
 namespace crofton {
 namespace {
 
-Result<void> cancelled() {
+Error cancelled() {
     return fail(ErrorCode::cancelled, kNoItem, "region: the callback asked to stop");
 }
 
@@ -94,8 +94,10 @@ Result<Region> Region::prepare(Strided<RegionObject> objects, const RegionOption
         if (auto done = read(objects, options, stop, contents); !done) return done.error();
         Region region;
         if (boxes.empty()) return region;
+        if (stop.is_raised(0.15)) return cancelled();
         auto tree = tree_over(boxes, layers, options, executor);
         if (!tree) return tree.error();
+        if (stop.is_raised(0.8)) return cancelled();
         auto data = Owner<world::RegionData>::make(std::move(*tree));
         data->items = std::move(contents.items);
         if (contents.solids) {
@@ -111,7 +113,7 @@ Result<Region> Region::prepare(Strided<RegionObject> objects, const RegionOption
             data->common_layers &= layers[i];
         }
         data->most_radius *= 1.0 + 0x1p-40;  // of the root's rounding
-        if (stop.is_raised(1.0)) return cancelled().error();
+        if (stop.is_raised(1.0)) return cancelled();
         region.data_ = data.release();
         return region;
     });
