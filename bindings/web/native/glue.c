@@ -42,7 +42,7 @@ SIZE(crofton_world_statistics, 80);
 AT(crofton_world_statistics, object_count, 64);
 SIZE(crofton_mesh_info, 24);
 AT(crofton_mesh_info, clusters, 8);
-SIZE(crofton_cluster, 56);
+SIZE(crofton_cluster, 8);
 _Static_assert(CROFTON_SET_USER == 1 && CROFTON_SET_LAYERS == 2 && CROFTON_SET_HIDDEN == 8 && CROFTON_SET_BOUND == 64,
                "a member has moved");
 SIZE(crofton_ray, 56);
