@@ -230,13 +230,10 @@ namespace Crofton {
         public ulong Triangles;
     }
 
-    /// <summary>A group of neighbouring triangles, and a box around them: Center plus and minus each half edge.</summary>
+    /// <summary>A group of neighbouring triangles.</summary>
     [StructLayout(LayoutKind.Sequential)]
     public struct Cluster {
         public uint FirstTriangle, TriangleCount;
-        [StructLayout(LayoutKind.Sequential)]
-        public struct Edge { public float X, Y, Z; }
-        public Edge Center, HalfEdge0, HalfEdge1, HalfEdge2;
     }
 
     /// <summary>A mesh cut into clusters. Permute the index buffer that you draw by TriangleOrder: each cluster is then one range.</summary>

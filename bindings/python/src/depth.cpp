@@ -23,7 +23,7 @@ struct ClusterRecord {
     float center[3];
     float half_edges[3][3];
 };
-static_assert(sizeof(ClusterRecord) == sizeof(depth::Cluster));
+static_assert(sizeof(ClusterRecord) == sizeof(depth::Cluster) + sizeof(depth::ClusterBox));
 
 // The library's message, with the names of Python's arguments in place of the module's.
 Error with_arguments(Error error, std::string arguments) {
@@ -54,7 +54,12 @@ std::shared_ptr<ClusteredMesh> cut(const py::handle& given, const py::handle& gi
 
 py::array clusters_of(const ClusteredMesh& mesh) {
     py::array_t<ClusterRecord> result(static_cast<py::ssize_t>(mesh.clusters().size()));
-    std::memcpy(result.mutable_data(), mesh.clusters().data(), mesh.clusters().size_bytes());
+    for (std::size_t c = 0; c < mesh.clusters().size(); ++c) {
+        ClusterRecord& record = result.mutable_data()[c];
+        const depth::ClusterBox box = mesh.box_of(c);
+        std::memcpy(&record, &mesh.clusters()[c], sizeof(depth::Cluster));
+        std::memcpy(record.center, &box, sizeof box);
+    }
     return result;
 }
 
@@ -178,8 +183,7 @@ void bind_depth(py::module_& module) {
             "them, `center` ± each of the three `half_edges`")
         .def("__len__", [](const ClusteredMesh& mesh) { return mesh.clusters().size(); })
         .def("__repr__", [](const ClusteredMesh& mesh) {
-            return format("ClusteredMesh(%zu clusters, %zu triangles)", mesh.clusters().size(),
-                          mesh.triangle_order().size());
+            return format("ClusteredMesh(%zu clusters, %zu triangles)", mesh.clusters().size(), mesh.triangle_count());
         });
 
     py::class_<DrawnMesh>(module, "DepthObject", "A mesh in a picture, for DepthCuller.")
@@ -199,8 +203,8 @@ void bind_depth(py::module_& module) {
         .def_readwrite("hides", &DrawnMesh::hides, "False for alpha-tested and transparent meshes, which hide nothing")
         .def_readwrite("position_error", &DrawnMesh::position_error)
         .def("__repr__", [](const DrawnMesh& m) {
-            return format("DepthObject(%zu triangles%s%s)", m.mesh->triangle_order().size(),
-                          m.one_sided ? ", one_sided" : "", m.hides ? "" : ", hides nothing");
+            return format("DepthObject(%zu triangles%s%s)", m.mesh->triangle_count(), m.one_sided ? ", one_sided" : "",
+                          m.hides ? "" : ", hides nothing");
         });
 
     py::class_<Culler>(module, "DepthCuller",

@@ -153,7 +153,7 @@ pub struct VisibleCluster {
     pub triangles: u64,
 }
 
-/// A group of neighbouring triangles, and a box in the mesh's coordinates that contains them.
+/// A group of neighbouring triangles.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cluster {
@@ -161,10 +161,6 @@ pub struct Cluster {
     pub first_triangle: u32,
     /// 1 to 64.
     pub triangle_count: u32,
-    /// The center of the box.
-    pub center: [f32; 3],
-    /// The corners of the box are the center plus or minus each of the three.
-    pub half_edges: [[f32; 3]; 3],
 }
 
 /// A mesh cut into clusters.

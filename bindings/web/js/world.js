@@ -54,7 +54,7 @@ export class World extends Owned {
         const { words } = memory, [clusters, count, order, triangles] = words.subarray(at + 16 >> 2, at + 32 >> 2);
         return { triangleOrder: words.slice(order >> 2, (order >> 2) + triangles),
             clusters: Array.from({ length: count }, (_, i) => ({
-                firstTriangle: words[(clusters >> 2) + 14 * i], triangleCount: words[(clusters >> 2) + 14 * i + 1] })) };
+                firstTriangle: words[(clusters >> 2) + 2 * i], triangleCount: words[(clusters >> 2) + 2 * i + 1] })) };
     }
     /** Finds boxes inside `mesh`, if it is closed, that hide what is behind them. Objects hide nothing before this call. */
     findOccluders(mesh) {

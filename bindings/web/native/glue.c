@@ -50,7 +50,7 @@ AT(crofton_world_statistics, boxes_changed, 48);
 AT(crofton_world_statistics, out_of_range, 56);
 SIZE(crofton_mesh_info, 24);
 AT(crofton_mesh_info, clusters, 8);
-SIZE(crofton_cluster, 56);
+SIZE(crofton_cluster, 8);
 _Static_assert(CROFTON_SET_USER == 1 && CROFTON_SET_LAYERS == 2 && CROFTON_SET_COLLIDES_WITH == 4 &&
                    CROFTON_SET_HIDDEN == 8 && CROFTON_SET_OCCLUDES == 16 && CROFTON_SET_MESH == 32 &&
                    CROFTON_SET_BOUND == 64 && CROFTON_SET_SHAPE == 128,

@@ -11,9 +11,7 @@ namespace crofton::capi {
 
 static_assert(CROFTON_MAX_CLUSTER_TRIANGLES == depth::Cluster::kMaxTriangles);
 static_assert(sizeof(crofton_cluster) == sizeof(depth::Cluster) &&
-              offsetof(crofton_cluster, triangle_count) == offsetof(depth::Cluster, triangle_count) &&
-              offsetof(crofton_cluster, center) == offsetof(depth::Cluster, center) &&
-              offsetof(crofton_cluster, half_edges) == offsetof(depth::Cluster, half_edges));
+              offsetof(crofton_cluster, triangle_count) == offsetof(depth::Cluster, triangle_count));
 static_assert(sizeof(crofton_visible_cluster) == sizeof(depth::VisibleCluster) &&
               offsetof(crofton_visible_cluster, cluster) == offsetof(depth::VisibleCluster, cluster) &&
               offsetof(crofton_visible_cluster, triangles) == offsetof(depth::VisibleCluster, triangles));

@@ -17,10 +17,10 @@ std::uint8_t flag(std::span<const std::uint8_t> flags, scene::MeshId mesh) {
     return mesh < flags.size() ? flags[mesh] : std::uint8_t{0};
 }
 
-Aabb bounds_of(const depth::Cluster& cluster) {
-    const glm::dvec3 center(cluster.center);
-    const glm::dvec3 half = glm::abs(glm::dvec3(cluster.half_edges[0])) + glm::abs(glm::dvec3(cluster.half_edges[1])) +
-                            glm::abs(glm::dvec3(cluster.half_edges[2]));
+Aabb bounds_of(const depth::ClusterBox& box) {
+    const glm::dvec3 center(box.center);
+    const glm::dvec3 half = glm::abs(glm::dvec3(box.half_edges[0])) + glm::abs(glm::dvec3(box.half_edges[1])) +
+                            glm::abs(glm::dvec3(box.half_edges[2]));
     return {center - half, center + half};
 }
 
@@ -83,7 +83,7 @@ void DrawList::select(std::span<const depth::VisibleCluster> visible, const Came
         const scene::MeshId mesh = drawables_->mesh_of(selected_[i].instance);
         for (std::size_t k = selected_[i].begin; k < selected_[i].end; ++k) {
             const depth::Cluster& cluster = clusters_->meshes[mesh].clusters()[visible[k].cluster];
-            const Aabb bounds = bounds_of(cluster);
+            const Aabb bounds = bounds_of(clusters_->meshes[mesh].box_of(visible[k].cluster));
             // Runs of triangles.
             std::uint64_t left = visible[k].triangles;
             for (std::uint32_t at = 0; left != 0;) {

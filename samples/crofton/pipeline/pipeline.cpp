@@ -320,7 +320,7 @@ struct Pipeline::State {
         if (!found) return found.error();
         frame.find_us = microseconds_since(start);
         frame.casters = casters.size();
-        for (const depth::DepthObject& o : casters) frame.triangles += o.mesh->triangle_order().size();
+        for (const depth::DepthObject& o : casters) frame.triangles += o.mesh->triangle_count();
         frame.casters_listed = caster_culler.statistics().objects_listed;
         frame.triangles_listed = caster_culler.statistics().triangles_listed;
         return {};

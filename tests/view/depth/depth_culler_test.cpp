@@ -320,7 +320,8 @@ Checked check_moved_hills(std::uint64_t seed, DepthCuller& culler, float positio
         const auto squares = static_cast<std::uint32_t>(3 + random.index(20));
         TriangleMesh mesh = hills(squares, 12.0f, float(random.number(0.5, 4.0)), random);
         for (glm::vec3& p : mesh.positions) p += offset;
-        CutMesh& cut = scene.meshes.emplace_back(std::move(mesh), static_cast<std::uint32_t>(1 + random.index(16)));
+        CutMesh& cut =
+            scene.meshes.emplace_back(std::move(mesh), static_cast<std::uint32_t>(1 + random.index(16)), false);
         for (glm::vec3& p : cut.mesh.positions) move(p, random);
         scene.objects.push_back({&cut, glm::translate(glm::dmat4(1.0), -glm::dvec3(offset)), random.index(2) == 0});
         scene.objects.back().position_error = position_error;

@@ -18,15 +18,18 @@
 
 namespace crofton::testing {
 
-// A mesh and what the culler makes of it.
+// A mesh and what the culler makes of it: some read the mesh in place.
 struct CutMesh {
     TriangleMesh mesh;  // in the order of the clusters
     depth::ClusteredMesh clusters;
 
-    explicit CutMesh(TriangleMesh source, std::uint32_t most = 0) : mesh(std::move(source)) {
+    CutMesh(CutMesh&&) = default;  // what is lent stays where it is
+
+    explicit CutMesh(TriangleMesh source, std::uint32_t most = 0, bool may_lend = true) : mesh(std::move(source)) {
         clusters = depth::ClusteredMesh::cut(mesh.positions, mesh.indices, {.max_triangles = most}).value();
         const Vector<std::uint32_t> given = mesh.indices;
         clusters.permute(given, mesh.indices);
+        if (may_lend && clusters.clusters().size() % 2 == 0) clusters.lend(mesh.positions, mesh.indices).value();
     }
 };
 

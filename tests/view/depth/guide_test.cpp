@@ -41,6 +41,13 @@ int show(World& world, const Vector<glm::vec3>& positions, const Vector<std::uin
     return 0;
 }
 
+int lend(depth::ClusteredMesh& clusters, std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices,
+         std::span<std::uint32_t> index_buffer) {
+    clusters.permute(indices, index_buffer);
+    if (const auto lent = clusters.lend(positions, index_buffer); !lent) return report(lent.error());
+    return 0;
+}
+
 template <class Draw>
 void show_shadows(const World& world, const Camera& camera, const Camera& sun, ViewResult& visible, ViewResult& casters,
                   const Draw& draw_into_map) {
@@ -54,6 +61,13 @@ void show_shadows(const World& world, const Camera& camera, const Camera& sun, V
 }  // namespace
 
 TEST_SUITE("depth/guide") {
+    TEST_CASE("the guide's mesh can be lent once it is permuted") {
+        const TriangleMesh box = crofton::testing::cube_mesh();
+        auto clusters = depth::ClusteredMesh::cut(box.positions, box.indices).value();
+        std::vector<std::uint32_t> index_buffer(box.indices.size());
+        CHECK(lend(clusters, box.positions, box.indices, index_buffer) == 0);
+    }
+
     TEST_CASE("the guide's example draws the front of the first box and nothing of the one behind it") {
         World world;
         const TriangleMesh box = crofton::testing::cube_mesh();

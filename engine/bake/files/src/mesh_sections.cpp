@@ -83,7 +83,7 @@ Result<Vector<std::optional<depth::ClusteredMesh>>> read_clusters(const Reader& 
         if (end == begin) continue;
         auto cut = depth::ClusteredMesh::deserialise(std::as_bytes(words->subspan(begin, end - begin)));
         if (!cut) return bad_section({"section 'clusters': mesh ", m, ": ", cut.error().message}, m);
-        if (cut->triangle_order().size() * 3 != meshes[m].index_count)
+        if (cut->triangle_count() * 3 != meshes[m].index_count)
             return bad_section({"section 'clusters': mesh ", m, " has another number of triangles"}, m);
         result[m].emplace(std::move(*cut));
         begin = end;

@@ -16,7 +16,7 @@ void find_neighbors(const std::uint8_t* corners, std::uint32_t triangle_count, s
     pairs.clear();
     std::uint8_t pair_count = 0;
     for (std::uint32_t h = 0; h < 3 * triangle_count; ++h) {
-        neighbors[h] = ClusteredMesh::kNone;
+        neighbors[h] = kNoNeighbor;
         const std::uint8_t* const c = corners + h / 3 * 3;
         if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0]) continue;
         const std::uint8_t a = corners[h], b = corners[next_corner(h)];

@@ -5,6 +5,8 @@
 #include <crofton/depth/clustered_mesh.hpp>
 #include <cstdint>
 
+#include "patch.hpp"
+
 namespace crofton::depth {
 
 // Numbers different keys in the order in which they come: at most as many as a cluster has corners.
@@ -40,7 +42,7 @@ class SmallTable {
 };
 
 // Writes for each edge (corner k to k + 1) of each triangle 4 · neighbour + the neighbour's edge, or
-// ClusteredMesh::kNone. Two triangles are neighbours where just these two of the cluster share the edge, in opposite
+// kNoNeighbor. Two triangles are neighbours where just these two of the cluster share the edge, in opposite
 // directions.
 void find_neighbors(const std::uint8_t* corners, std::uint32_t triangle_count, std::uint8_t* neighbors);
 

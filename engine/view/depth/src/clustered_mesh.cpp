@@ -9,10 +9,12 @@
 #include <crofton/core/drop_spare.hpp>
 #include <glm/common.hpp>
 #include <string>
+#include <utility>
 
 #include "adjacency.hpp"
 #include "cut.hpp"
 #include "oriented_bound.hpp"
+#include "patch.hpp"
 
 namespace crofton::depth {
 namespace {
@@ -49,71 +51,72 @@ Result<void> check(std::span<const glm::vec3> positions, std::span<const std::ui
 
 }  // namespace
 
-// Lays out the patches of a mesh whose clusters are known.
+// Writes the clusters of a mesh one after the other.
 class PatchBuilder {
   public:
     PatchBuilder(ClusteredMesh& mesh, std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices)
-        : mesh_(mesh), positions_(positions), indices_(indices) {
-        mesh.patches_.reserve(mesh.clusters_.size());
-    }
+        : mesh_(mesh), positions_(positions), indices_(indices), patch_(Owner<Patch>::make()) {}
 
-    void add(const Cluster& cluster) {
-        weld(cluster);
-        mesh_.patches_.push_back(
-            {static_cast<std::uint32_t>(mesh_.coordinates_.size()), static_cast<std::uint32_t>(mesh_.blocks_.size()),
-             static_cast<std::uint8_t>(vertex_count_), static_cast<std::uint8_t>(cluster.triangle_count)});
-        find_neighbors(corners_.data(), cluster.triangle_count, neighbors_.data());
-        append_blocks(cluster.triangle_count);
-        append_vertices();
+    // Triangles [begin, end) of the order.
+    void add(std::uint32_t begin, std::uint32_t end) {
+        Vector<std::uint32_t>& order = mesh_.order_;
+        // Ascending, so that what a cluster lists is drawn in the order of the mesh.
+        std::sort(order.begin() + begin, order.begin() + end);
+        own_.clear();
+        for (std::uint32_t k = begin; k < end; ++k)
+            for (std::uint32_t c = 0; c < 3; ++c) own_.push_back(indices_[std::size_t{3} * order[k] + c]);
+        const auto first_vertex = static_cast<std::uint32_t>(mesh_.vertices_.size());
+        weld();
+        const auto vertices = static_cast<std::uint32_t>(mesh_.vertices_.size()) - first_vertex;
+        mesh_.clusters_.push_back({begin, end - begin});
+        mesh_.boxes_.push_back(bound_of(positions_, own_, vertices));
+        mesh_.firsts_.push_back(static_cast<std::uint32_t>(mesh_.corners_.size()));
+        mesh_.first_vertices_.push_back(first_vertex);
+        append_corners(bits_for(vertices));
+        mesh_.corners_.push_back(0);  // read with the last
+        const std::size_t cluster = mesh_.clusters_.size() - 1;
+        (void)PatchReader::read(mesh_, cluster, *patch_);
+        PatchReader::note_twins(mesh_, cluster, *patch_);
+        if (end != indices_.size() / 3) mesh_.corners_.pop_back();
     }
 
   private:
-    static constexpr std::uint32_t kLanes = ClusteredMesh::kLanes;
-
     // Numbers the cluster's vertices, equal positions alike.
-    void weld(const Cluster& cluster) {
-        vertices_.clear();
-        vertex_count_ = 0;
-        for (std::uint32_t k = 0; k < cluster.triangle_count; ++k)
-            for (std::uint32_t c = 0; c < 3; ++c) {
-                const glm::vec3& p =
-                    positions_[indices_[std::size_t{3} * mesh_.order_[cluster.first_triangle + k] + c]];
-                // + 0 makes −0 and 0 one number.
-                const std::array<float, 3> place = {p.x + 0.0f, p.y + 0.0f, p.z + 0.0f};
-                const std::uint8_t number = vertices_.number_of(std::bit_cast<std::array<std::uint32_t, 3>>(place),
-                                                                static_cast<std::uint8_t>(vertex_count_));
-                if (number == vertex_count_) places_[vertex_count_++] = place;
-                corners_[3 * k + c] = number;
-            }
-    }
-
-    void append_blocks(std::uint32_t triangles) {
-        for (std::uint32_t first = 0; first < triangles; first += kLanes) {
-            ClusteredMesh::Block block{};
-            for (std::uint32_t i = 0; i < kLanes; ++i)
-                for (std::uint32_t k = 0; k < 3; ++k) {
-                    const bool within = first + i < triangles;
-                    block.corners[k][i] = within ? corners_[3 * (first + i) + k] : std::uint8_t{0};
-                    block.neighbors[k][i] = within ? neighbors_[3 * (first + i) + k] : ClusteredMesh::kNone;
-                }
-            mesh_.blocks_.push_back(block);
+    void weld() {
+        numbers_.clear();
+        std::uint32_t count = 0;
+        for (std::size_t i = 0; i < own_.size(); ++i) {
+            const glm::vec3& p = positions_[own_[i]];
+            // + 0 makes −0 and 0 one number.
+            const std::array<float, 3> place = {p.x + 0.0f, p.y + 0.0f, p.z + 0.0f};
+            const std::uint8_t number = numbers_.number_of(std::bit_cast<std::array<std::uint32_t, 3>>(place),
+                                                           static_cast<std::uint8_t>(count));
+            if (number == count) ++count, mesh_.vertices_.push_back(p);
+            corners_[i] = number;
         }
     }
 
-    void append_vertices() {
-        const std::uint32_t padded = (vertex_count_ + kLanes - 1) / kLanes * kLanes;
-        for (std::size_t axis = 0; axis < 3; ++axis)
-            for (std::uint32_t v = 0; v < padded; ++v)
-                mesh_.coordinates_.push_back(places_[std::min(v, vertex_count_ - 1)][axis]);
+    void append_corners(std::uint32_t bits) {
+        std::uint64_t word = 0;
+        std::uint32_t filled = 0;
+        for (std::size_t i = 0; i < own_.size(); ++i) {
+            word |= std::uint64_t{corners_[i]} << filled;
+            filled += bits;
+            if (filled < 32) continue;
+            mesh_.corners_.push_back(static_cast<std::uint32_t>(word));
+            word >>= 32;
+            filled -= 32;
+        }
+        if (filled != 0) mesh_.corners_.push_back(static_cast<std::uint32_t>(word));
     }
 
     ClusteredMesh& mesh_;
     std::span<const glm::vec3> positions_;
     std::span<const std::uint32_t> indices_;
-    SmallTable<std::array<std::uint32_t, 3>> vertices_;
-    std::array<std::array<float, 3>, 3 * Cluster::kMaxTriangles> places_;
-    std::uint32_t vertex_count_ = 0;
-    std::array<std::uint8_t, 3 * Cluster::kMaxTriangles> corners_, neighbors_;
+    Owner<Patch> patch_;
+    Vector<std::uint32_t> own_;  // indices of the cluster
+    SmallTable<std::array<std::uint32_t, 3>> numbers_;
+    std::array<std::uint8_t, 3 * Cluster::kMaxTriangles> corners_;
 };
 
 Result<ClusteredMesh> ClusteredMesh::cut(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices,
@@ -124,29 +127,38 @@ Result<ClusteredMesh> ClusteredMesh::cut(std::span<const glm::vec3> positions, s
     ClusteredMesh mesh;
     Groups groups = cut_into_groups(positions, indices, most);
     mesh.order_ = std::move(groups.order);
-    std::uint32_t begin = 0;
-    Vector<std::uint32_t> own;
-    for (const std::uint32_t end : groups.ends) {
-        Cluster cluster{begin, end - begin};
-        // Ascending, so that what a cluster lists is drawn in the order of the mesh.
-        std::sort(mesh.order_.begin() + begin, mesh.order_.begin() + end);
-        own.clear();
-        for (std::uint32_t k = begin; k < end; ++k)
-            for (std::uint32_t c = 0; c < 3; ++c) own.push_back(indices[std::size_t{3} * mesh.order_[k] + c]);
-        set_bound(cluster, positions, own);
-        mesh.clusters_.push_back(cluster);
-        begin = end;
-    }
+    mesh.triangle_count_ = mesh.order_.size();
     for (const std::uint32_t i : indices) mesh.largest_ = (glm::max)(mesh.largest_, glm::abs(positions[i]));
-    mesh.bound_ = {0, static_cast<std::uint32_t>(indices.size() / 3)};
-    set_aligned_bound(mesh.bound_, positions, indices);
+    mesh.bound_ = aligned_bound_of(positions, indices);
     PatchBuilder builder(mesh, positions, indices);
-    for (const Cluster& cluster : mesh.clusters_) builder.add(cluster);
-    crofton::detail::drop_spare(mesh.clusters_);
-    crofton::detail::drop_spare(mesh.coordinates_);
-    crofton::detail::drop_spare(mesh.blocks_);
+    std::uint32_t begin = 0;
+    for (const std::uint32_t end : groups.ends) builder.add(std::exchange(begin, end), end);
+    const auto drop_spare = [](auto&... lists) { (crofton::detail::drop_spare(lists), ...); };
+    drop_spare(mesh.clusters_, mesh.boxes_, mesh.firsts_, mesh.corners_, mesh.vertices_, mesh.first_vertices_);
     mesh.identity_ = next_identity();
     return mesh;
+}
+
+Result<void> ClusteredMesh::lend(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices) {
+    if (indices.size() != 3 * triangle_count_)
+        return fail(ErrorCode::invalid_argument, kNoItem, "clusters: what is lent has another number of triangles");
+    for (std::size_t i = 0; i < indices.size(); ++i)
+        if (indices[i] >= positions.size())
+            return fail(ErrorCode::out_of_range, i, "clusters: an index of what is lent is out of range");
+    const auto patch = Owner<Patch>::make();
+    for (std::size_t c = 0; c < clusters_.size(); ++c) {
+        (void)PatchReader::read(*this, c, *patch);
+        for (std::uint32_t t = 0; t < clusters_[c].triangle_count; ++t)
+            for (std::uint32_t k = 0; k < 3; ++k) {
+                const std::size_t i = std::size_t{3} * (clusters_[c].first_triangle + t) + k;
+                if (positions[indices[i]] != patch->vertex(patch->corner(t, k)))
+                    return fail(ErrorCode::invalid_argument, i,
+                                "clusters: what is lent has a corner elsewhere; lend the indices that permute() wrote");
+            }
+    }
+    lent_positions_ = positions, lent_indices_ = indices;
+    order_ = Vector<std::uint32_t>(), vertices_ = Vector<glm::vec3>(), first_vertices_ = Vector<std::uint32_t>();
+    return {};
 }
 
 std::uint64_t ClusteredMesh::next_identity() {
@@ -155,14 +167,15 @@ std::uint64_t ClusteredMesh::next_identity() {
 }
 
 void ClusteredMesh::permute(std::span<const std::uint32_t> indices, std::span<std::uint32_t> to) const {
+    if (order_.empty()) std::copy(indices.begin(), indices.end(), to.begin());
     for (std::size_t k = 0; k < order_.size(); ++k)
         std::copy_n(indices.begin() + 3 * static_cast<std::ptrdiff_t>(order_[k]), 3,
                     to.begin() + 3 * static_cast<std::ptrdiff_t>(k));
 }
 
 std::size_t ClusteredMesh::memory() const {
-    const auto bytes = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
-    return sizeof(*this) + bytes(order_) + bytes(clusters_) + bytes(patches_) + bytes(coordinates_) + bytes(blocks_);
+    const auto bytes = [](const auto&... lists) { return ((lists.capacity() * sizeof(lists[0])) + ...); };
+    return sizeof(*this) + bytes(order_, clusters_, boxes_, firsts_, corners_, vertices_, first_vertices_);
 }
 
 }  // namespace crofton::depth

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "patch.hpp"
+
 namespace crofton::depth {
 
 // Nearness: depth where it is reversed, −depth otherwise. More is nearer.
@@ -60,10 +62,8 @@ struct Projection {
 
 // A cluster to draw.
 struct PatchData {
-    const float* coordinates;
-    const ClusteredMesh::Block* blocks;
-    std::uint32_t vertex_count, triangle_count;
-    const Cluster& bound;  // that `projection` is of
+    Patch& patch;             // opened
+    const ClusterBox& bound;  // that `projection` is of
     const Projection& projection;
 };
 
@@ -75,13 +75,14 @@ struct MapTriangle {
     double reach, depth_error;
 };
 
-inline constexpr std::uint32_t kMaxPatchVertices = Cluster::kMaxTriangles * 3;
-
 // Of each object as a whole. Objects that cannot be placed get a negative least_w, and cover nothing.
 void project_objects(const PictureData& picture, const DepthObject* objects, std::size_t count, Projection* to);
 // Of an object's clusters: within the projection of the object. Writes up to 7 more than there are.
 void project_clusters(const PictureData& picture, const ObjectData& object, const Projection& within,
-                      const Cluster* clusters, std::size_t count, Projection* to);
+                      const ClusteredMesh::PackedBox* boxes, std::size_t count, Projection* to);
+// The same of boxes that are not packed.
+void project_boxes(const PictureData& picture, const ObjectData& object, const Projection& within,
+                   const ClusterBox* boxes, std::size_t count, Projection* to);
 // True if all that may be covered is nearer already, as far as the tiles are there.
 bool is_hidden(const Tiles& tiles, const Projection& projection);
 // Returns the first of objects[begin, end) that is not hidden, or `end`.

@@ -17,6 +17,7 @@
 #include "projection-inl.hpp"
 #include "raster-inl.hpp"
 #include "tiles-inl.hpp"
+#include "unpack-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace crofton::depth::HWY_NAMESPACE {
@@ -29,8 +30,9 @@ void project_each(const PictureData& picture, const DepthObject* objects, std::s
     for (std::size_t i = 0; i < count; i += lanes) project_some_objects(picture, objects + i, count - i, to + i);
 }
 
-void project_parts(const PictureData& picture, const ObjectData& object, const Projection& within,
-                   const Cluster* clusters, std::size_t count, Projection* to) {
+template <class Box>
+void project_parts(const PictureData& picture, const ObjectData& object, const Projection& within, const Box* boxes,
+                   std::size_t count, Projection* to) {
     const DF d;
     BoxLanes box;
     for (std::size_t i = 0; i < 4; ++i) {
@@ -38,7 +40,16 @@ void project_parts(const PictureData& picture, const ObjectData& object, const P
         box.moved[i] = hn::Set(d, object.moved[i]);
     }
     for (std::size_t i = 0; i < count; i += hn::Lanes(d))
-        project_some_clusters(picture, box, within, clusters + i, count - i, to + i);
+        project_some_boxes(picture, box, within, boxes + i, count - i, to + i);
+}
+
+void project_packed(const PictureData& picture, const ObjectData& object, const Projection& within,
+                    const ClusteredMesh::PackedBox* boxes, std::size_t count, Projection* to) {
+    project_parts(picture, object, within, boxes, count, to);
+}
+void project_unpacked(const PictureData& picture, const ObjectData& object, const Projection& within,
+                      const ClusterBox* boxes, std::size_t count, Projection* to) {
+    project_parts(picture, object, within, boxes, count, to);
 }
 
 bool ask(const Tiles& tiles, const Projection& projection) {
@@ -72,7 +83,8 @@ HWY_AFTER_NAMESPACE();
 namespace crofton::depth {
 
 HWY_EXPORT(project_each);
-HWY_EXPORT(project_parts);
+HWY_EXPORT(project_packed);
+HWY_EXPORT(project_unpacked);
 HWY_EXPORT(ask);
 HWY_EXPORT(ask_each);
 HWY_EXPORT(draw);
@@ -82,8 +94,12 @@ void project_objects(const PictureData& picture, const DepthObject* objects, std
     HWY_DYNAMIC_DISPATCH(project_each)(picture, objects, count, to);
 }
 void project_clusters(const PictureData& picture, const ObjectData& object, const Projection& within,
-                      const Cluster* clusters, std::size_t count, Projection* to) {
-    HWY_DYNAMIC_DISPATCH(project_parts)(picture, object, within, clusters, count, to);
+                      const ClusteredMesh::PackedBox* boxes, std::size_t count, Projection* to) {
+    HWY_DYNAMIC_DISPATCH(project_packed)(picture, object, within, boxes, count, to);
+}
+void project_boxes(const PictureData& picture, const ObjectData& object, const Projection& within,
+                   const ClusterBox* boxes, std::size_t count, Projection* to) {
+    HWY_DYNAMIC_DISPATCH(project_unpacked)(picture, object, within, boxes, count, to);
 }
 bool is_hidden(const Tiles& tiles, const Projection& projection) {
     return HWY_DYNAMIC_DISPATCH(ask)(tiles, projection);

@@ -84,7 +84,7 @@ class FaceSetup {
           depth_error_(depth_error),
           depth_share_(depth_share + 0x1p-19f) {}
 
-    HWY_INLINE void run(const ClusteredMesh::Block& block, Faces& faces) const {
+    HWY_INLINE void run(const PatchBlock& block, Faces& faces) const {
         const DF d;
         for (std::size_t i = 0; i < Faces::kCount; i += hn::Lanes(d)) set(block, faces, i);
     }
@@ -96,7 +96,7 @@ class FaceSetup {
 
     static HWY_INLINE VF l1(VF x, VF y) { return hn::Add(hn::Abs(x), hn::Abs(y)); }
 
-    HWY_INLINE void set(const ClusteredMesh::Block& block, Faces& f, std::size_t i) const {
+    HWY_INLINE void set(const PatchBlock& block, Faces& f, std::size_t i) const {
         const DF d;
         const DI integers;
         VI number[3];

@@ -41,7 +41,7 @@ class NearFaceSetup {
         depth_error_ = 1.25f * (errors_.z + errors_.w);
     }
 
-    void set(const ClusteredMesh::Block& block, std::uint32_t i, const PatchVertices& vertices, Faces& f,
+    void set(const PatchBlock& block, std::uint32_t i, const PatchVertices& vertices, Faces& f,
              NearLimits& limits) const {
         const std::uint8_t c[3] = {block.corners[0][i], block.corners[1][i], block.corners[2][i]};
         f.flags[i] = 0;

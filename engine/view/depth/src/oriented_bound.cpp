@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -33,20 +34,6 @@ Extents along(const Axes& axes, std::span<const glm::vec3> positions, std::span<
     return result;
 }
 
-// Rounding moves a corner by less than 2^-22 of the coordinates' size.
-void set(Cluster& cluster, const Axes& axes, const Extents& extents) {
-    const glm::dvec3 middle = 0.5 * (extents.min + extents.max);
-    const glm::dvec3 center = middle.x * axes[0] + middle.y * axes[1] + middle.z * axes[2];
-    const glm::dvec3 size = (glm::max)(glm::abs(extents.min), glm::abs(extents.max));
-    const double rounding = 0x1p-21 * (size.x + size.y + size.z);
-    cluster.center = glm::vec3(center);
-    for (std::size_t k = 0; k < 3; ++k) {
-        const auto axis = static_cast<glm::length_t>(k);
-        const double half = 0.5 * (extents.max[axis] - extents.min[axis]) + rounding;
-        cluster.half_edges[k] = glm::vec3(half * axes[k]);
-    }
-}
-
 constexpr Axes kAligned = {glm::dvec3(1.0, 0.0, 0.0), glm::dvec3(0.0, 1.0, 0.0), glm::dvec3(0.0, 0.0, 1.0)};
 
 // Along the mean normal and the longest edge across it; false where there is none.
@@ -72,19 +59,145 @@ bool find_axes(std::span<const glm::vec3> positions, std::span<const std::uint32
     return true;
 }
 
-}  // namespace
+using Integers = std::array<std::array<std::int32_t, 3>, 3>;
 
-void set_bound(Cluster& cluster, std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices) {
-    Axes axes = kAligned, turned;
-    Extents extents = along(axes, positions, indices);
-    if (find_axes(positions, indices, turned))
-        if (const Extents other = along(turned, positions, indices); other.area() < 0.9 * extents.area())
-            axes = turned, extents = other;
-    set(cluster, axes, extents);
+// The largest of a box's half edges has a coordinate of 2^13 to 2^14 units, so that edges may still grow.
+constexpr int kBits = 14, kLeastExponent = -126;
+constexpr std::int32_t kLargest = 32'767;
+
+int exponent_for(double largest) {
+    int exponent = 0;
+    (void)std::frexp(largest, &exponent);
+    return std::max(exponent - kBits, kLeastExponent);
 }
 
-void set_aligned_bound(Cluster& cluster, std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices) {
-    set(cluster, kAligned, along(kAligned, positions, indices));
+double away_from_zero(double x) {
+    return x < 0.0 ? std::floor(x) : std::ceil(x);
+}
+
+// The box, aligned or not, by what it is made of.
+class BoxPacker {
+  public:
+    BoxPacker(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices, const glm::dvec3& center)
+        : positions_(positions), indices_(indices), center_(center) {}
+
+    // |p − center| along each axis, rounded up.
+    void set_aligned() {
+        glm::dvec3 most(0.0);
+        // A difference is rounded once, by 2^-53.
+        for (const std::uint32_t i : indices_) most = (glm::max)(most, glm::abs(from_center(i)) * (1.0 + 0x1p-50));
+        exponent_ = exponent_for(std::max({most.x, most.y, most.z}));
+        edges_ = {};
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double units = std::ldexp(most[static_cast<glm::length_t>(k)], -exponent_);
+            edges_[k][k] = static_cast<std::int32_t>(std::ceil(units));
+        }
+    }
+
+    // Along the axes; false if rounding leaves something outside.
+    bool set_turned(const Axes& axes, const glm::dvec3& half) {
+        double largest = 0.0;
+        for (std::size_t k = 0; k < 3; ++k)
+            for (glm::length_t i = 0; i < 3; ++i)
+                largest = std::max(largest, std::abs(half[static_cast<glm::length_t>(k)] * axes[k][i]));
+        exponent_ = exponent_for(largest);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double units = std::ldexp(half[static_cast<glm::length_t>(k)], -exponent_);
+            // Half a unit at least, rounded away from zero: no edge is nothing.
+            for (std::size_t i = 0; i < 3; ++i)
+                edges_[k][i] = static_cast<std::int32_t>(
+                    std::round(std::max(units, 1.0) * axes[k][static_cast<glm::length_t>(i)]));
+        }
+        constexpr int kAttempts = 4;
+        for (int attempt = 0; attempt < kAttempts; ++attempt) {
+            glm::dvec3 share;
+            if (!find_shares(share)) return false;
+            if (share.x <= 1.0 && share.y <= 1.0 && share.z <= 1.0) return true;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const double growth = std::max(share[static_cast<glm::length_t>(k)], 1.0);
+                for (std::int32_t& edge : edges_[k]) {
+                    const double grown = growth > 1.0 ? away_from_zero(growth * edge) : edge;
+                    if (!(std::abs(grown) <= kLargest)) return false;
+                    edge = static_cast<std::int32_t>(grown);
+                }
+            }
+        }
+        return false;
+    }
+
+    [[nodiscard]] ClusteredMesh::PackedBox packed(std::uint32_t vertices) const {
+        ClusteredMesh::PackedBox box{};
+        const auto low_half = [](std::int32_t x) { return static_cast<std::uint32_t>(x) & 0xffff; };
+        for (std::size_t i = 0; i < 3; ++i) box.center[i] = static_cast<float>(center_[static_cast<glm::length_t>(i)]);
+        for (std::size_t i = 0; i < 9; ++i) box.words[i / 2] |= low_half(edges_[i / 3][i % 3]) << 16 * (i % 2);
+        box.words[4] |= (static_cast<std::uint32_t>(exponent_ + 127) | vertices << 8) << 16;
+        return box;
+    }
+
+  private:
+    [[nodiscard]] glm::dvec3 from_center(std::uint32_t index) const { return glm::dvec3(positions_[index]) - center_; }
+
+    // Bounds how many half edges points are away from the middle, along each; false if edges lie in a plane. Cross
+    // products of integers below 2^15 are exact. A distance is rounded by 2^-53 of itself, the three products and
+    // their sum by less than 4 · 2^-53 of the terms.
+    bool find_shares(glm::dvec3& share) const {
+        std::array<glm::dvec3, 3> edges, normals;
+        for (std::size_t k = 0; k < 3; ++k) edges[k] = {edges_[k][0], edges_[k][1], edges_[k][2]};
+        for (std::size_t k = 0; k < 3; ++k) normals[k] = glm::cross(edges[(k + 1) % 3], edges[(k + 2) % 3]);
+        const double volume = std::abs(glm::dot(edges[0], normals[0]));
+        if (volume == 0.0) return false;
+        const double unit = std::ldexp(1.0, -exponent_);
+        share = glm::dvec3(0.0);
+        for (const std::uint32_t i : indices_) {
+            const glm::dvec3 d = unit * from_center(i);
+            for (std::size_t k = 0; k < 3; ++k) {
+                const double sum = std::abs(glm::dot(d, normals[k]));
+                const double terms = glm::dot(glm::abs(d), glm::abs(normals[k]));
+                double& most = share[static_cast<glm::length_t>(k)];
+                most = std::max(most, (sum + 0x1p-50 * terms) / volume * (1.0 + 0x1p-50));
+            }
+        }
+        return true;
+    }
+
+    std::span<const glm::vec3> positions_;
+    std::span<const std::uint32_t> indices_;
+    glm::dvec3 center_;  // of floats
+    Integers edges_{};
+    int exponent_ = 0;
+};
+
+glm::dvec3 rounded_center(const Axes& axes, const Extents& extents) {
+    const glm::dvec3 middle = 0.5 * (extents.min + extents.max);
+    return glm::dvec3(glm::vec3(middle.x * axes[0] + middle.y * axes[1] + middle.z * axes[2]));
+}
+
+}  // namespace
+
+ClusteredMesh::PackedBox bound_of(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices,
+                                  std::uint32_t vertices) {
+    const Extents extents = along(kAligned, positions, indices);
+    if (Axes turned; find_axes(positions, indices, turned))
+        if (const Extents other = along(turned, positions, indices); other.area() < 0.9 * extents.area()) {
+            BoxPacker box(positions, indices, rounded_center(turned, other));
+            if (box.set_turned(turned, 0.5 * (other.max - other.min))) return box.packed(vertices);
+        }
+    BoxPacker box(positions, indices, rounded_center(kAligned, extents));
+    box.set_aligned();
+    return box.packed(vertices);
+}
+
+// Rounding moves a corner by less than 2^-22 of the coordinates' size.
+ClusterBox aligned_bound_of(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices) {
+    const Extents extents = along(kAligned, positions, indices);
+    const glm::dvec3 size = (glm::max)(glm::abs(extents.min), glm::abs(extents.max));
+    const double rounding = 0x1p-21 * (size.x + size.y + size.z);
+    ClusterBox box{glm::vec3(0.5 * (extents.min + extents.max)), {}};
+    for (std::size_t k = 0; k < 3; ++k) {
+        const auto axis = static_cast<glm::length_t>(k);
+        box.half_edges[k][axis] = static_cast<float>(0.5 * (extents.max[axis] - extents.min[axis]) + rounding);
+    }
+    return box;
 }
 
 }  // namespace crofton::depth

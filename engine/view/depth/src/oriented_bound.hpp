@@ -8,11 +8,12 @@
 
 namespace crofton::depth {
 
-// Sets centre and half edges: of the aligned box, or of one along the triangles' mean normal where its surface is less.
-// The box contains the triangles, its floats' rounding included.
-void set_bound(Cluster& cluster, std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices);
+// Returns the aligned box, or one along the triangles' mean normal where its surface is less. It contains the triangles
+// exactly. `vertices`: their number, which it keeps.
+[[nodiscard]] ClusteredMesh::PackedBox bound_of(std::span<const glm::vec3> positions,
+                                                std::span<const std::uint32_t> indices, std::uint32_t vertices);
 
-// The aligned box alone.
-void set_aligned_bound(Cluster& cluster, std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices);
+// The aligned box, with its floats' rounding.
+[[nodiscard]] ClusterBox aligned_bound_of(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices);
 
 }  // namespace crofton::depth

@@ -20,6 +20,7 @@
 #include "projection-inl.hpp"
 #include "raster-inl.hpp"
 #include "tiles-inl.hpp"
+#include "unpack-inl.hpp"
 
 #if defined(CROFTON_DEPTH_PATCH_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef CROFTON_DEPTH_PATCH_INL
@@ -38,11 +39,13 @@ class PatchDrawer {
     PatchDrawer(const PictureData& picture, const ObjectData& object, const PatchData& patch)
         : picture_(picture),
           object_(object),
-          patch_(patch),
-          unclear_(patch.projection.is_unclear()),
+          projection_(patch.projection),
+          patch_(patch.patch),
+          unclear_(projection_.is_unclear()),
           errors_(clip_errors(object, patch.bound)) {}
 
     std::uint64_t run() {
+        PatchUnpacker(patch_).read();
         if (unclear_)
             set_near_faces();
         else
@@ -62,10 +65,10 @@ class PatchDrawer {
     template <class Place>
     HWY_INLINE void transform(const Place& place) {
         const DF d;
-        const std::size_t padded = (patch_.vertex_count + 7) / 8 * 8;
-        const float* const xs = patch_.coordinates;
-        for (std::size_t i = 0; i < padded; i += hn::Lanes(d)) {
-            const VF x = hn::Load(d, xs + i), y = hn::Load(d, xs + padded + i), z = hn::Load(d, xs + 2 * padded + i);
+        const auto& coordinates = patch_.coordinates;
+        for (std::size_t i = 0; i < padded(patch_.vertex_count); i += hn::Lanes(d)) {
+            const VF x = hn::Load(d, coordinates[0] + i), y = hn::Load(d, coordinates[1] + i);
+            const VF z = hn::Load(d, coordinates[2] + i);
             VF clip[4];
             for (int k = 0; k < 4; ++k)
                 clip[k] = hn::Add(hn::Add(hn::Add(hn::Mul(hn::Set(d, object_.columns[0][k]), x),
@@ -87,9 +90,9 @@ class PatchDrawer {
             hn::Store(hn::Add(hn::Mul(hn::Mul(clip[1], inverse), half_height), middle_y), d, vertices_.y + i);
             hn::Store(hn::Mul(clip[2], inverse), d, vertices_.z + i);
         });
-        const float w = patch_.projection.least_w - 2.0f * errors_.w;
+        const float w = projection_.least_w - 2.0f * errors_.w;
         const float move = picture_.grid + pixel_error(picture_, errors_, w);
-        const FaceSetup setup(picture_, object_, patch_.projection, vertices_, move, errors_.z / w, errors_.w / w);
+        const FaceSetup setup(picture_, object_, projection_, vertices_, move, errors_.z / w, errors_.w / w);
         for (std::uint32_t b = 0; b * Faces::kCount < patch_.triangle_count; ++b) {
             setup.run(patch_.blocks[b], faces_[b]);
             note(b);
@@ -169,6 +172,7 @@ class PatchDrawer {
     void close_surface() {
         if (surface_is_closed_) return;
         surface_is_closed_ = true;
+        PatchUnpacker(patch_).find_neighbors();
         close_edges();
         exclude_corners();
         std::fill_n(partners_, patch_.triangle_count, kUnknown);
@@ -199,7 +203,7 @@ class PatchDrawer {
             const auto both = hn::And(hn::ShiftRightSame(flags, k), hn::Shr(others, hn::And(across, all(3))));
             const auto may_close = hn::Ne(hn::And(both, all(Faces::closable)), all(0));
             const auto alike = hn::Eq(hn::And(hn::Xor(flags, others), all(Faces::front | Faces::back)), all(0));
-            const auto closes = hn::And(hn::Ne(across, all(ClusteredMesh::kNone)), hn::And(may_close, alike));
+            const auto closes = hn::And(hn::Ne(across, all(kNoNeighbor)), hn::And(may_close, alike));
             closed = hn::Or(closed, hn::IfThenElseZero(closes, all(1 << k)));
             const auto here = hn::RebindMask(d, closes);
             widest = hn::IfThenElse(here, hn::Max(widest, steps), widest);
@@ -273,11 +277,11 @@ class PatchDrawer {
 
     // The samples at corners where the surface ends: where an edge there is not closed.
     HWY_INLINE void exclude_corners() {
-        std::fill_n(radius_, (patch_.vertex_count + 7) / 8 * 8, 0.0f);
+        std::fill_n(radius_, padded(patch_.vertex_count), 0.0f);
         std::fill_n(ends_, patch_.vertex_count, std::uint8_t{0});
         for (std::uint64_t left = solid_; left != 0; left &= left - 1) {
             const auto t = static_cast<std::uint32_t>(std::countr_zero(left));
-            const ClusteredMesh::Block& block = patch_.blocks[t / Faces::kCount];
+            const PatchBlock& block = patch_.blocks[t / Faces::kCount];
             const Faces& f = faces(t);
             for (std::uint32_t k = 0; k < 3; ++k) {
                 const std::uint8_t corner = block.corners[k][lane(t)];
@@ -343,7 +347,7 @@ class PatchDrawer {
     void for_triangles_around(std::uint32_t v, const Use& use) {
         for (std::uint64_t left = solid_; left != 0; left &= left - 1) {
             const auto t = static_cast<std::uint32_t>(std::countr_zero(left));
-            const ClusteredMesh::Block& block = patch_.blocks[t / Faces::kCount];
+            const PatchBlock& block = patch_.blocks[t / Faces::kCount];
             for (const auto& corners : block.corners)
                 if (corners[lane(t)] == v) use(faces(t), lane(t));
         }
@@ -351,7 +355,8 @@ class PatchDrawer {
 
     const PictureData& picture_;
     const ObjectData& object_;
-    const PatchData& patch_;
+    const Projection& projection_;
+    Patch& patch_;
     const bool unclear_;  // in clip coordinates
     const ClipErrors errors_;
     std::uint64_t drawn_ = 0, solid_ = 0, visible_ = 0;        // triangles

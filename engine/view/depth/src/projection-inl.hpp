@@ -28,11 +28,11 @@ namespace hn = hwy::HWY_NAMESPACE;
 // itself is in the last factor.
 inline constexpr float kErrorShare = 0x1.00002p-21f;
 
-HWY_INLINE ClipErrors clip_errors(const ObjectData& object, const Cluster& cluster) {
+HWY_INLINE ClipErrors clip_errors(const ObjectData& object, const ClusterBox& box) {
     float reach[3], errors[4];
     for (int k = 0; k < 3; ++k)
-        reach[k] = (std::abs((&cluster.center.x)[k]) + std::abs((&cluster.half_edges[0].x)[k])) +
-                   (std::abs((&cluster.half_edges[1].x)[k]) + std::abs((&cluster.half_edges[2].x)[k]));
+        reach[k] = (std::abs((&box.center.x)[k]) + std::abs((&box.half_edges[0].x)[k])) +
+                   (std::abs((&box.half_edges[1].x)[k]) + std::abs((&box.half_edges[2].x)[k]));
     for (int i = 0; i < 4; ++i) {
         const float terms = (std::abs(object.columns[0][i]) * reach[0] + std::abs(object.columns[1][i]) * reach[1]) +
                             (std::abs(object.columns[2][i]) * reach[2] + std::abs(object.columns[3][i]));
@@ -243,29 +243,58 @@ HWY_INLINE Projections project(const PictureData& picture, const ClipBoxes& boxe
     return result;
 }
 
-// Numbers of `stride` floats each: element `first` of what lies at `base`, one a lane, the last `count` times.
+// Numbers of `stride` elements each: one of what lies at `base`, one a lane, those beyond `count` the last one's.
+template <class Number>
 class Gather {
   public:
-    Gather(const float* base, std::int32_t stride, std::size_t count) : base_(base) {
+    Gather(const Number* base, std::int32_t stride, std::size_t count) : base_(base) {
         alignas(32) std::int32_t at[kTile];
         for (std::size_t i = 0; i < kTile; ++i) at[i] = static_cast<std::int32_t>(std::min(i, count - 1)) * stride;
         at_ = hn::Load(hn::RebindToSigned<DF>(), at);
     }
-    HWY_INLINE VF operator()(std::size_t element) const { return hn::GatherIndex(DF(), base_ + element, at_); }
+    HWY_INLINE auto operator()(std::size_t element) const {
+        return hn::GatherIndex(hn::Rebind<Number, DF>(), base_ + element, at_);
+    }
 
   private:
-    const float* base_;
+    const Number* base_;
     hn::Vec<hn::RebindToSigned<DF>> at_;
 };
 
-HWY_INLINE void project_some_clusters(const PictureData& picture, BoxLanes& box, const Projection& within,
-                                      const Cluster* clusters, std::size_t count, Projection* to) {
-    static_assert(sizeof(Cluster) % sizeof(float) == 0);
-    const Gather gather(&clusters->center.x, sizeof(Cluster) / sizeof(float), count);
+HWY_INLINE void set_boxes(BoxLanes& box, const ClusterBox* boxes, std::size_t count) {
+    static_assert(sizeof(ClusterBox) % sizeof(float) == 0);
+    const Gather<float> gather(&boxes->center.x, sizeof(ClusterBox) / sizeof(float), count);
     for (std::size_t k = 0; k < 3; ++k) {
         box.center[k] = gather(k);
         for (std::size_t e = 0; e < 3; ++e) box.half_edges[e][k] = gather(3 + 3 * e + k);
     }
+}
+
+HWY_INLINE void set_boxes(BoxLanes& box, const ClusteredMesh::PackedBox* boxes, std::size_t count) {
+    constexpr auto kStride = static_cast<std::int32_t>(sizeof(*boxes) / sizeof(float));
+    const DF d;
+    const hn::RebindToSigned<DF> integers;
+    const Gather<float> center(boxes->center, kStride, count);
+    const Gather<std::int32_t> words(reinterpret_cast<const std::int32_t*>(boxes->words), kStride, count);
+    for (std::size_t k = 0; k < 3; ++k) box.center[k] = center(k);
+    const auto last = words(4);
+    const auto exponent = hn::And(hn::ShiftRight<16>(last), hn::Set(integers, 0xff));
+    const VF unit = hn::BitCast(d, hn::ShiftLeft<23>(exponent));
+    const auto set = [&](std::size_t i, auto units) {
+        box.half_edges[i / 3][i % 3] = hn::Mul(hn::ConvertTo(d, units), unit);
+    };
+    for (std::size_t i = 0; i < 8; i += 2) {
+        const auto two = words(i / 2);
+        set(i, hn::ShiftRight<16>(hn::ShiftLeft<16>(two)));
+        set(i + 1, hn::ShiftRight<16>(two));
+    }
+    set(8, hn::ShiftRight<16>(hn::ShiftLeft<16>(last)));
+}
+
+template <class Box>
+HWY_INLINE void project_some_boxes(const PictureData& picture, BoxLanes& box, const Projection& within,
+                                   const Box* boxes, std::size_t count, Projection* to) {
+    set_boxes(box, boxes, count);
     Projections found = project(picture, ClipBoxes::of<false>(box));
     found.intersect(within);
     found.store(to);
@@ -276,7 +305,7 @@ HWY_INLINE auto set_matrices(BoxLanes& box, const PictureData& picture, const De
                              const VF (&largest)[3]) {
     static_assert(sizeof(DepthObject) % sizeof(float) == 0);
     const DF d;
-    const Gather gather(&objects->to_clip[0][0], sizeof(DepthObject) / sizeof(float), count);
+    const Gather<float> gather(&objects->to_clip[0][0], sizeof(DepthObject) / sizeof(float), count);
     alignas(32) float errors[kTile];
     for (std::size_t i = 0; i < hn::Lanes(d); ++i) errors[i] = objects[std::min(i, count - 1)].position_error;
     const VF error = hn::Load(d, errors);
@@ -304,8 +333,8 @@ HWY_INLINE void project_some_objects(const PictureData& picture, const DepthObje
     alignas(32) float numbers[9][kTile];
     for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
         const ClusteredMesh& mesh = *objects[std::min(i, count - 1)].mesh;
-        const Cluster& bound = mesh.bound();
-        const glm::vec3 largest = mesh.layout().largest;
+        const ClusterBox& bound = mesh.bound();
+        const glm::vec3 largest = mesh.largest();
         for (glm::length_t k = 0; k < 3; ++k) {
             numbers[k][i] = bound.center[k];
             numbers[3 + k][i] = bound.half_edges[static_cast<std::size_t>(k)][k];

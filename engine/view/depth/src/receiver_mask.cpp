@@ -2,6 +2,7 @@
 #include "receiver_mask.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -29,8 +30,8 @@ Projection whole(const PictureData& picture) {
 }
 
 // A triangle as a box: a flat one, of twice its area.
-Cluster box_of(const std::array<glm::dvec3, 3>& corners) {
-    Cluster box;
+ClusterBox box_of(const std::array<glm::dvec3, 3>& corners) {
+    ClusterBox box;
     box.center = glm::vec3(0.5 * (corners[1] + corners[2]));
     box.half_edges[0] = glm::vec3(0.5 * (corners[1] - corners[0]));
     box.half_edges[1] = glm::vec3(0.5 * (corners[2] - corners[0]));
@@ -113,6 +114,7 @@ void ReceiverMask::find(const SeenPicture& seen, const DepthReceivers& receivers
 }
 
 void ReceiverMask::begin(const SeenPicture& seen, const DepthReceivers& receivers, const PictureView& map) {
+    if (!patch_) patch_ = Owner<Patch>::make();
     strips_ = seen.strips;
     picture_ = seen.picture;
     // Other samples are less than a pixel away.
@@ -146,7 +148,7 @@ void ReceiverMask::add_object(const DepthReceiver& receiver, const SeenObject& s
                               std::span<const VisibleCluster> clusters) {
     const ClusteredMesh& mesh = *receiver.mesh;
     in_picture_ = seen.in_picture;
-    add_interpolation_error(in_picture_, mesh.layout().largest);
+    add_interpolation_error(in_picture_, mesh.largest());
     in_map_ = {};
     for (glm::length_t i = 0; i < 4; ++i) {
         const float share = i == 0 ? widened_.x : i == 1 ? widened_.y : i == 2 ? map_.z_sign : 1.0f;
@@ -154,7 +156,7 @@ void ReceiverMask::add_object(const DepthReceiver& receiver, const SeenObject& s
         for (int c = 0; c < 3; ++c) in_map_.moved[i] += std::abs(in_map_.columns[c][i]);
         in_map_.moved[i] *= seen.position_error;
     }
-    add_interpolation_error(in_map_, mesh.layout().largest);
+    add_interpolation_error(in_map_, mesh.largest());
     if (!(seen.position_error >= 0.0f) || !can_be_placed(in_map_)) return mark_everything();
     if (!receiver.solid) return add_clusters(mesh, clusters);
     boxes_.assign(1, mesh.bound());
@@ -164,7 +166,7 @@ void ReceiverMask::add_object(const DepthReceiver& receiver, const SeenObject& s
 
 void ReceiverMask::add_clusters(const ClusteredMesh& mesh, std::span<const VisibleCluster> clusters) {
     boxes_.clear();
-    for (const VisibleCluster& c : clusters) boxes_.push_back(mesh.clusters()[c.cluster]);
+    for (const VisibleCluster& c : clusters) boxes_.push_back(mesh.box_of(c.cluster));
     project_into_map();
     pieces_.clear();
     for (std::size_t i = 0; i < clusters.size(); ++i) {
@@ -179,19 +181,11 @@ void ReceiverMask::add_clusters(const ClusteredMesh& mesh, std::span<const Visib
 }
 
 void ReceiverMask::add_triangles(const ClusteredMesh& mesh, const VisibleCluster& cluster) {
-    const ClusteredMesh::Layout layout = mesh.layout();
-    const ClusteredMesh::Patch& patch = layout.patches[cluster.cluster];
-    const std::size_t padded =
-        (patch.vertex_count + ClusteredMesh::kLanes - 1) / ClusteredMesh::kLanes * ClusteredMesh::kLanes;
-    const float* const x = layout.coordinates.data() + patch.first_coordinate;
-    for (std::uint32_t t = 0; t < patch.triangle_count; ++t) {
-        if ((cluster.triangles >> t & 1) == 0) continue;
-        const ClusteredMesh::Block& block = layout.blocks[patch.first_block + t / ClusteredMesh::kLanes];
+    (void)PatchReader::read(mesh, cluster.cluster, *patch_);
+    for (std::uint64_t left = cluster.triangles; left != 0; left &= left - 1) {
+        const auto t = static_cast<std::uint32_t>(std::countr_zero(left));
         Piece& piece = pieces_.emplace_back();
-        for (std::size_t k = 0; k < 3; ++k) {
-            const std::size_t v = block.corners[k][t % ClusteredMesh::kLanes];
-            piece.corners[k] = {x[v], x[padded + v], x[2 * padded + v]};
-        }
+        for (std::size_t k = 0; k < 3; ++k) piece.corners[k] = patch_->vertex(patch_->corner(t, k));
     }
 }
 
@@ -202,8 +196,8 @@ void ReceiverMask::add_pieces() {
         for (const Piece& piece : pieces_) boxes_.push_back(box_of(piece.corners));
         project_into_map();
         picture_projections_.resize(boxes_.size() + kTile);
-        project_clusters(picture_, in_picture_, whole(picture_), boxes_.data(), boxes_.size(),
-                         picture_projections_.data());
+        project_boxes(picture_, in_picture_, whole(picture_), boxes_.data(), boxes_.size(),
+                      picture_projections_.data());
         next_.clear();
         for (std::size_t i = 0; i < pieces_.size(); ++i) {
             const Projection &in_map = map_projections_[i], &in_picture = picture_projections_[i];
@@ -302,16 +296,16 @@ void ReceiverMask::split(const Piece& piece, const PictureTriangle& placed, cons
 
 void ReceiverMask::project_into_map() {
     map_projections_.resize(boxes_.size() + kTile);
-    project_clusters(map_, in_map_, whole(map_), boxes_.data(), boxes_.size(), map_projections_.data());
+    project_boxes(map_, in_map_, whole(map_), boxes_.data(), boxes_.size(), map_projections_.data());
 }
 
-bool ReceiverMask::is_before_light(const Cluster& box) const {
+bool ReceiverMask::is_before_light(const ClusterBox& box) const {
     PictureData map = map_;
     map.near_share = true_near_share_;
     ObjectData object = in_map_;
     for (auto& column : object.columns) column[2] = -column[2];
     Projection projections[1 + kTile];
-    project_clusters(map, object, whole(map), &box, 1, projections);
+    project_boxes(map, object, whole(map), &box, 1, projections);
     return projections[0].covers_nothing();
 }
 
@@ -343,13 +337,13 @@ void ReceiverMask::mark(const Projection& p) {
 }
 
 // The triangle's part in each row of tiles, wider and higher by what lookups reach. Bounds are those of project().
-void ReceiverMask::mark_triangle(const Piece& piece, const Cluster& box, const Projection& in_map) {
+void ReceiverMask::mark_triangle(const Piece& piece, const ClusterBox& box, const Projection& in_map) {
     const bool marked =
         mark_rows(triangle_in_map(piece, box), in_map.y0 / kTile, in_map.y1 / kTile, map_.tiles.width, floors_.data());
     empty_ = empty_ && !marked;
 }
 
-MapTriangle ReceiverMask::triangle_in_map(const Piece& piece, const Cluster& box) const {
+MapTriangle ReceiverMask::triangle_in_map(const Piece& piece, const ClusterBox& box) const {
     MapTriangle t{};
     double least_w = std::numeric_limits<double>::infinity(), deepest = 0.0;
     for (std::size_t k = 0; k < 3; ++k) {

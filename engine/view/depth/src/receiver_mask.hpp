@@ -69,12 +69,12 @@ class ReceiverMask {
     // Projects boxes_ into the map: nearness is negated, so the bound is that of the farthest point.
     void project_into_map();
     void mark(const Projection& in_map);  // the whole rectangle
-    void mark_triangle(const Piece& piece, const Cluster& box, const Projection& in_map);
-    [[nodiscard]] MapTriangle triangle_in_map(const Piece& piece, const Cluster& box) const;
+    void mark_triangle(const Piece& piece, const ClusterBox& box, const Projection& in_map);
+    [[nodiscard]] MapTriangle triangle_in_map(const Piece& piece, const ClusterBox& box) const;
     void mark_everything();
 
     // True of points that the light does not see: behind it, or before the near plane.
-    [[nodiscard]] bool is_before_light(const Cluster& box) const;
+    [[nodiscard]] bool is_before_light(const ClusterBox& box) const;
     [[nodiscard]] bool is_seen(const Piece& piece, Projection in_picture) const;
     [[nodiscard]] float nearness(std::uint32_t x, std::uint32_t y) const;  // of a pixel of the camera's picture
 
@@ -89,7 +89,8 @@ class ReceiverMask {
     bool everything_ = false, empty_ = true;
     Vector<float> floors_;
     Vector<Piece> pieces_, next_;
-    Vector<Cluster> boxes_;
+    Vector<ClusterBox> boxes_;
+    Owner<Patch> patch_;  // of the cluster at hand
     Vector<Projection> map_projections_, picture_projections_;
 };
 

@@ -3,21 +3,24 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <crofton/core/drop_spare.hpp>
 #include <crofton/depth/clustered_mesh.hpp>
 #include <cstring>
+#include <numeric>
+
+#include "patch.hpp"
 
 namespace crofton::depth {
 namespace {
 
-// What the bytes begin with. Then: a Cluster each, the vertex count of each (a byte, padded to whole words), the order
-// of the triangles, the coordinates, the blocks.
+// What the bytes begin with. Then: the triangle count of each cluster (a byte, padded to whole words), a PackedBox
+// each, the order of the triangles, their corners, the vertices.
 struct StoredHeader {
-    std::uint32_t clusters = 0, triangles = 0, coordinates = 0, blocks = 0;
+    std::uint32_t clusters = 0, triangles = 0, corner_words = 0, vertices = 0;
     glm::vec3 largest{0.0f};
-    glm::vec3 center{0.0f};  // of the bound
-    std::array<glm::vec3, 3> half_edges{};
+    ClusterBox bound;
 };
-static_assert(sizeof(StoredHeader) == 76 && sizeof(Cluster) == 56 && sizeof(ClusteredMesh::Block) == 48);
+static_assert(sizeof(StoredHeader) == 76 && sizeof(ClusteredMesh::PackedBox) == 32 && sizeof(glm::vec3) == 12);
 
 constexpr float kFarthest = 1e16f;  // of a box around positions up to 1e15
 constexpr std::uint32_t kMostTriangles = std::uint32_t{1} << 28;
@@ -25,14 +28,11 @@ constexpr std::uint32_t kMostTriangles = std::uint32_t{1} << 28;
 constexpr std::uint64_t whole_words(std::uint64_t bytes) {
     return (bytes + 3) / 4 * 4;
 }
-constexpr std::uint32_t padded(std::uint32_t count) {
-    return (count + ClusteredMesh::kLanes - 1) / ClusteredMesh::kLanes * ClusteredMesh::kLanes;
-}
 
 std::uint64_t size_for(const StoredHeader& header) {
-    return sizeof header + std::uint64_t{header.clusters} * sizeof(Cluster) + whole_words(header.clusters) +
-           std::uint64_t{header.triangles} * 4 + std::uint64_t{header.coordinates} * 4 +
-           std::uint64_t{header.blocks} * sizeof(ClusteredMesh::Block);
+    return sizeof header + whole_words(header.clusters) +
+           std::uint64_t{header.clusters} * sizeof(ClusteredMesh::PackedBox) + std::uint64_t{header.triangles} * 4 +
+           std::uint64_t{header.corner_words} * 4 + std::uint64_t{header.vertices} * sizeof(glm::vec3);
 }
 
 Error damaged(const char* what, std::uint64_t cluster = kNoItem) {
@@ -43,9 +43,9 @@ Error damaged(const char* what, std::uint64_t cluster = kNoItem) {
 bool is_within(const glm::vec3& v, float limit) {
     return std::abs(v.x) <= limit && std::abs(v.y) <= limit && std::abs(v.z) <= limit;
 }
-bool is_box(const glm::vec3& center, const std::array<glm::vec3, 3>& half_edges) {
-    return is_within(center, kFarthest) && std::all_of(half_edges.begin(), half_edges.end(),
-                                                       [](const glm::vec3& e) { return is_within(e, kFarthest); });
+bool is_box(const ClusterBox& box) {
+    return is_within(box.center, kFarthest) && std::all_of(box.half_edges.begin(), box.half_edges.end(),
+                                                           [](const glm::vec3& e) { return is_within(e, kFarthest); });
 }
 
 void append(Vector<std::byte>& bytes, const void* from, std::size_t size) {
@@ -64,26 +64,26 @@ struct StoredMesh {
         bytes = bytes.subspan(count * sizeof(T));
     }
 
-    // Patches follow one another in coordinates and blocks, so their sizes alone are stored.
-    static Result<void> place_patches(ClusteredMesh& mesh, std::span<const std::uint8_t> vertex_counts) {
-        std::uint64_t triangle = 0, coordinate = 0, block = 0;
-        for (std::size_t c = 0; c < mesh.clusters_.size(); ++c) {
-            const Cluster& cluster = mesh.clusters_[c];
-            if (cluster.first_triangle != triangle || cluster.triangle_count < 1 ||
-                cluster.triangle_count > Cluster::kMaxTriangles)
-                return damaged("a cluster's triangles do not follow those before", c);
-            if (vertex_counts[c] < 1 || vertex_counts[c] > 3 * cluster.triangle_count)
-                return damaged("a cluster's vertex count is out of range", c);
-            if (!is_box(cluster.center, cluster.half_edges)) return damaged("a cluster's box is none", c);
-            mesh.patches_.push_back({static_cast<std::uint32_t>(coordinate), static_cast<std::uint32_t>(block),
-                                     vertex_counts[c], static_cast<std::uint8_t>(cluster.triangle_count)});
-            triangle += cluster.triangle_count;
-            coordinate += 3 * padded(vertex_counts[c]);
-            block += padded(cluster.triangle_count) / ClusteredMesh::kLanes;
-            if (coordinate > mesh.coordinates_.size() || block > mesh.blocks_.size())
+    // Clusters follow one another in all lists, so their sizes alone are stored.
+    static Result<void> place_clusters(ClusteredMesh& mesh, std::span<const std::uint8_t> triangle_counts) {
+        std::uint64_t triangle = 0, word = 0, vertex = 0;
+        for (std::size_t c = 0; c < mesh.boxes_.size(); ++c) {
+            const std::uint32_t triangles = triangle_counts[c], vertices = mesh.boxes_[c].vertex_count();
+            if (triangles < 1 || triangles > Cluster::kMaxTriangles)
+                return damaged("a cluster's number of triangles is out of range", c);
+            if (vertices < 1 || vertices > 3 * triangles) return damaged("a cluster's vertex count is out of range", c);
+            if (!is_box(mesh.box_of(c))) return damaged("a cluster's box is none", c);
+            mesh.clusters_.push_back({static_cast<std::uint32_t>(triangle), triangles});
+            mesh.firsts_.push_back(static_cast<std::uint32_t>(word));
+            mesh.first_vertices_.push_back(static_cast<std::uint32_t>(vertex));
+            triangle += triangles;
+            word += words_for(vertices, triangles);
+            vertex += vertices;
+            if (triangle > mesh.triangle_count_ || word > mesh.corners_.size() || vertex > mesh.vertices_.size())
                 return damaged("a cluster has more vertices or triangles than there are", c);
         }
-        if (triangle != mesh.order_.size() || coordinate != mesh.coordinates_.size() || block != mesh.blocks_.size())
+        // A word follows the last cluster's.
+        if (triangle != mesh.triangle_count_ || word + 1 != mesh.corners_.size() || vertex != mesh.vertices_.size())
             return damaged("there are more vertices or triangles than clusters have");
         return {};
     }
@@ -97,54 +97,54 @@ struct StoredMesh {
         return {};
     }
 
-    static bool is_sound(const ClusteredMesh::Block& block, std::uint32_t lane, const ClusteredMesh::Patch& patch,
-                         bool within) {
-        for (std::uint32_t k = 0; k < 3; ++k) {
-            const std::uint8_t neighbor = block.neighbors[k][lane];
-            if (block.corners[k][lane] >= patch.vertex_count) return false;
-            if (!within && (block.corners[k][lane] != block.corners[0][lane] || neighbor != ClusteredMesh::kNone))
-                return false;
-            if (neighbor != ClusteredMesh::kNone && (neighbor / 4 >= patch.triangle_count || neighbor % 4 > 2))
-                return false;
-        }
-        return true;
-    }
-
-    static Result<void> check_blocks(const ClusteredMesh& mesh) {
-        for (std::size_t p = 0; p < mesh.patches_.size(); ++p) {
-            const ClusteredMesh::Patch& patch = mesh.patches_[p];
-            for (std::uint32_t t = 0; t < padded(patch.triangle_count); ++t)
-                if (!is_sound(mesh.blocks_[patch.first_block + t / ClusteredMesh::kLanes], t % ClusteredMesh::kLanes,
-                              patch, t < patch.triangle_count))
-                    return damaged("a triangle names a vertex or a neighbour that its cluster does not have", p);
+    static Result<void> check_corners(ClusteredMesh& mesh) {
+        const auto patch = Owner<Patch>::make();
+        for (std::size_t c = 0; c < mesh.clusters_.size(); ++c) {
+            if (!PatchReader::read(mesh, c, *patch))
+                return damaged("a triangle names a vertex that its cluster does not have", c);
+            PatchReader::note_twins(mesh, c, *patch);
         }
         return {};
     }
 
     // Also refuses NaN.
-    static bool are_within(std::span<const float> coordinates, const glm::vec3& largest) {
+    static bool are_within(std::span<const glm::vec3> vertices, const glm::vec3& largest) {
         const float limit = std::max({largest.x, largest.y, largest.z});
-        return std::all_of(coordinates.begin(), coordinates.end(), [limit](float x) { return std::abs(x) <= limit; });
+        return std::all_of(vertices.begin(), vertices.end(),
+                           [limit](const glm::vec3& v) { return is_within(v, limit); });
+    }
+
+    static Vector<glm::vec3> vertices_of(const ClusteredMesh& mesh) {
+        Vector<glm::vec3> vertices;
+        const auto patch = Owner<Patch>::make();
+        for (std::size_t c = 0; c < mesh.clusters_.size(); ++c) {
+            (void)PatchReader::read(mesh, c, *patch);
+            for (std::uint32_t v = 0; v < patch->vertex_count; ++v) vertices.push_back(patch->vertex(v));
+        }
+        return vertices;
     }
 };
 
 Vector<std::byte> ClusteredMesh::serialise() const {
-    StoredHeader header{static_cast<std::uint32_t>(clusters_.size()),
-                        static_cast<std::uint32_t>(order_.size()),
-                        static_cast<std::uint32_t>(coordinates_.size()),
-                        static_cast<std::uint32_t>(blocks_.size()),
-                        largest_,
-                        bound_.center,
-                        bound_.half_edges};
+    const Vector<glm::vec3> vertices = StoredMesh::vertices_of(*this);
+    const StoredHeader header{static_cast<std::uint32_t>(clusters_.size()),
+                              static_cast<std::uint32_t>(triangle_count_),
+                              static_cast<std::uint32_t>(corners_.size()),
+                              static_cast<std::uint32_t>(vertices.size()),
+                              largest_,
+                              bound_};
+    Vector<std::uint32_t> in_order(order_.empty() ? triangle_count_ : 0);
+    std::iota(in_order.begin(), in_order.end(), 0u);
+    const std::span<const std::uint32_t> order = order_.empty() ? std::span(in_order) : triangle_order();
     Vector<std::byte> bytes;
     bytes.reserve(static_cast<std::size_t>(size_for(header)));
     append(bytes, &header, sizeof header);
-    append(bytes, clusters_.data(), clusters_.size() * sizeof(Cluster));
-    for (const Patch& patch : patches_) bytes.push_back(std::byte{patch.vertex_count});
+    for (const Cluster& cluster : clusters_) bytes.push_back(static_cast<std::byte>(cluster.triangle_count));
     bytes.resize(static_cast<std::size_t>(whole_words(bytes.size())));
-    append(bytes, order_.data(), order_.size() * sizeof(std::uint32_t));
-    append(bytes, coordinates_.data(), coordinates_.size() * sizeof(float));
-    append(bytes, blocks_.data(), blocks_.size() * sizeof(Block));
+    append(bytes, boxes_.data(), boxes_.size() * sizeof(PackedBox));
+    append(bytes, order.data(), order.size_bytes());
+    append(bytes, corners_.data(), corners_.size() * sizeof(std::uint32_t));
+    append(bytes, vertices.data(), vertices.size() * sizeof(glm::vec3));
     return bytes;
 }
 
@@ -154,24 +154,26 @@ Result<ClusteredMesh> ClusteredMesh::deserialise(std::span<const std::byte> byte
     std::memcpy(&header, bytes.data(), sizeof header);
     if (bytes.size() != size_for(header)) return damaged("the bytes are not as many as their header says");
     if (header.clusters == 0 || header.triangles > kMostTriangles) return damaged("a count is out of range");
-    if (!is_box(header.center, header.half_edges) || !is_within(header.largest, kFarthest) ||
+    if (!is_box(header.bound) || !is_within(header.largest, kFarthest) ||
         std::min({header.largest.x, header.largest.y, header.largest.z}) < 0.0f)
         return damaged("the mesh's box is none");
     bytes = bytes.subspan(sizeof header);
     ClusteredMesh mesh;
     mesh.largest_ = header.largest;
-    mesh.bound_ = {0, header.triangles, header.center, header.half_edges};
-    Vector<std::uint8_t> vertex_counts;
-    StoredMesh::take(bytes, header.clusters, mesh.clusters_);
-    StoredMesh::take(bytes, static_cast<std::size_t>(whole_words(header.clusters)), vertex_counts);
+    mesh.bound_ = header.bound;
+    mesh.triangle_count_ = header.triangles;
+    Vector<std::uint8_t> triangle_counts;
+    StoredMesh::take(bytes, static_cast<std::size_t>(whole_words(header.clusters)), triangle_counts);
+    StoredMesh::take(bytes, header.clusters, mesh.boxes_);
     StoredMesh::take(bytes, header.triangles, mesh.order_);
-    StoredMesh::take(bytes, header.coordinates, mesh.coordinates_);
-    StoredMesh::take(bytes, header.blocks, mesh.blocks_);
-    mesh.patches_.reserve(header.clusters);
-    if (auto placed = StoredMesh::place_patches(mesh, vertex_counts); !placed) return placed.error();
+    StoredMesh::take(bytes, header.corner_words, mesh.corners_);
+    StoredMesh::take(bytes, header.vertices, mesh.vertices_);
+    if (auto placed = StoredMesh::place_clusters(mesh, triangle_counts); !placed) return placed.error();
     if (auto checked = StoredMesh::check_order(mesh.order_); !checked) return checked.error();
-    if (auto checked = StoredMesh::check_blocks(mesh); !checked) return checked.error();
-    if (!StoredMesh::are_within(mesh.coordinates_, mesh.largest_)) return damaged("a coordinate is beyond the mesh's");
+    if (auto checked = StoredMesh::check_corners(mesh); !checked) return checked.error();
+    if (!StoredMesh::are_within(mesh.vertices_, mesh.largest_)) return damaged("a coordinate is beyond the mesh's");
+    for (auto* list : {&mesh.firsts_, &mesh.first_vertices_}) crofton::detail::drop_spare(*list);
+    crofton::detail::drop_spare(mesh.clusters_);
     mesh.identity_ = next_identity();
     return mesh;
 }

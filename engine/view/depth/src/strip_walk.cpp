@@ -36,6 +36,7 @@ void StripWalk::begin(std::uint32_t first_column, std::uint32_t end_column) {
     if (!frame_->floors().empty()) raise_floors();
     tiles.pixels = pixels_.data(), tiles.least = least_.data(), tiles.floors = floors_.data();
     tiles.written = written_.data();
+    if (!patch_) patch_ = Owner<Patch>::make();
     first_.fill(kEnd);
     items_.clear();
     clusters_.clear();
@@ -70,7 +71,7 @@ void StripWalk::walk_bin(std::uint32_t bin) {
         first_[bin] = item.next;
         if (item.next != kEnd) hwy::Prefetch(&items_[item.next]);
         if (is_hidden(picture_.tiles, item.projection)) continue;
-        draw(item.object, item.cluster, frame_->objects()[item.object].mesh->clusters()[item.cluster], item.projection);
+        draw(item.object, item.cluster, frame_->objects()[item.object].mesh->box_of(item.cluster), item.projection);
     }
 }
 
@@ -88,11 +89,11 @@ void StripWalk::look_into(std::uint32_t object) {
 }
 
 void StripWalk::split(std::uint32_t object) {
-    const std::span<const Cluster> clusters = frame_->objects()[object].mesh->clusters();
+    const std::span<const ClusteredMesh::PackedBox> boxes = frame_->objects()[object].mesh->boxes();
     const Projection& whole = frame_->projections()[object];
-    if (projections_.size() < clusters.size() + kTile) projections_.resize(clusters.size() + kTile);
-    project_clusters(picture_, frame_->data_of(object), whole, clusters.data(), clusters.size(), projections_.data());
-    for (std::uint32_t c = 0; c < clusters.size(); ++c) {
+    if (projections_.size() < boxes.size() + kTile) projections_.resize(boxes.size() + kTile);
+    project_clusters(picture_, frame_->data_of(object), whole, boxes.data(), boxes.size(), projections_.data());
+    for (std::uint32_t c = 0; c < boxes.size(); ++c) {
         const Projection& p = projections_[c];
         if (!p.covers_nothing() && p.x1 >= picture_.tiles.first_x && p.x0 <= picture_.tiles.last_x)
             push({object, c, kEnd, p});
@@ -111,17 +112,12 @@ void StripWalk::push(const Item& item) {
     last_[bin] = number;
 }
 
-void StripWalk::draw(std::uint32_t object, std::uint32_t cluster, const Cluster& bound, const Projection& projection) {
+void StripWalk::draw(std::uint32_t object, std::uint32_t cluster, const ClusterBox& bound,
+                     const Projection& projection) {
     if (whole_ && is_exceeded()) return list_whole(object, cluster);
-    const ClusteredMesh::Layout layout = frame_->objects()[object].mesh->layout();
-    const ClusteredMesh::Patch& patch = layout.patches[cluster];
-    count(patch.triangle_count, projection);
-    const PatchData data{layout.coordinates.data() + patch.first_coordinate,
-                         layout.blocks.data() + patch.first_block,
-                         patch.vertex_count,
-                         patch.triangle_count,
-                         bound,
-                         projection};
+    PatchReader::open(*frame_->objects()[object].mesh, cluster, *patch_);
+    count(patch_->triangle_count, projection);
+    const PatchData data{*patch_, bound, projection};
     clusters_.push_back({object, cluster, draw_patch(picture_, frame_->data_of(object), data)});
 }
 

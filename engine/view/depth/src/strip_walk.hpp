@@ -74,7 +74,7 @@ class StripWalk {
     void split(std::uint32_t object);
     void push(const Item& item);
     // `bound`: what `projection` is of.
-    void draw(std::uint32_t object, std::uint32_t cluster, const Cluster& bound, const Projection& projection);
+    void draw(std::uint32_t object, std::uint32_t cluster, const ClusterBox& bound, const Projection& projection);
     void list_whole(std::uint32_t object, std::uint32_t cluster);
     // Counts what is done for a box in one of the strips.
     void count(std::uint64_t work, const Projection& box);
@@ -92,6 +92,7 @@ class StripWalk {
     std::array<std::uint32_t, DepthFrame::kBins> first_{}, last_{};
     Vector<Item> items_;
     Vector<Projection> projections_;  // of the clusters of one object
+    Owner<Patch> patch_;              // the cluster that is drawn
     Vector<VisibleCluster> clusters_, untested_;
     Vector<std::uint32_t> asked_;
 };

@@ -10,10 +10,10 @@ namespace {
 
 // Whether the clusters have this mesh's triangles, as far as their number and the largest coordinates tell.
 bool fits(const depth::ClusteredMesh& cut, const TriangleMesh& mesh) {
-    if (cut.triangle_order().size() != mesh.triangle_count()) return false;
+    if (cut.triangle_count() != mesh.triangle_count()) return false;
     glm::vec3 largest(0.0f);
     for (const std::uint32_t i : mesh.indices) largest = (glm::max)(largest, glm::abs(mesh.positions[i]));
-    return largest == cut.layout().largest;
+    return largest == cut.largest();
 }
 
 }  // namespace

@@ -26,12 +26,9 @@ typedef struct crofton_draw_limits {
 
 #define CROFTON_MAX_CLUSTER_TRIANGLES 64u
 
-/* The triangles [first_triangle, first_triangle + triangle_count) in the order of the clusters, and a box that contains
- * them, in the mesh's coordinates. */
+/* The triangles [first_triangle, first_triangle + triangle_count) in the order of the clusters. */
 typedef struct crofton_cluster {
     uint32_t first_triangle, triangle_count; /* 1 to CROFTON_MAX_CLUSTER_TRIANGLES */
-    float center[3];
-    float half_edges[9]; /* half_edges[3 k + i] is component i of edge k; center +- each edge gives the corners */
 } crofton_cluster;
 
 typedef struct crofton_clustered_mesh crofton_clustered_mesh; /* a mesh cut into clusters; it never changes */

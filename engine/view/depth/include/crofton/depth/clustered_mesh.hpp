@@ -2,6 +2,7 @@
 // Meshes cut into clusters: small groups of neighbouring triangles that a view lists or drops as one.
 #pragma once
 #include <array>
+#include <bit>
 #include <crofton/core/error.hpp>
 #include <crofton/core/memory.hpp>
 #include <crofton/geometry/box.hpp>
@@ -12,15 +13,18 @@
 
 namespace crofton::depth {
 
-// The triangles [first_triangle, first_triangle + triangle_count) of ClusteredMesh::triangle_order(), and a box in
-// model coordinates that contains them.
+// The triangles [first_triangle, first_triangle + triangle_count) of the permuted mesh.
 struct Cluster {
     static constexpr std::uint32_t kMaxTriangles = 64;  // a set of its triangles fits into one 64-bit number
 
     std::uint32_t first_triangle = 0;
     std::uint32_t triangle_count = 0;
+};
+
+// Contains a cluster's triangles, in model coordinates: the parallelepiped with the corners center ± each of the three.
+struct ClusterBox {
     glm::vec3 center{0.0f};
-    std::array<glm::vec3, 3> half_edges{};  // centre ± each of the three gives the box's corners
+    std::array<glm::vec3, 3> half_edges{};
 };
 
 struct ClusterOptions {
@@ -29,8 +33,9 @@ struct ClusterOptions {
     std::uint32_t max_triangles = 0;
 };
 
-// A mesh as DepthCuller reads it: its clusters, and the triangles that meet along each edge. Copies the positions; the
-// caller's index buffer is permuted by triangle_order(), so that each cluster is one range of it.
+// A mesh as DepthCuller reads it: its clusters, and which triangles share vertices. Copies the positions, until lend()
+// makes it read the caller's; the caller's index buffer is permuted by triangle_order(), so that each cluster is one
+// range of it.
 class ClusteredMesh {
   public:
     // Cuts by expected cost: each cut minimises Σ (triangles in whole clusters) × (surface area of their box), by
@@ -44,18 +49,29 @@ class ClusteredMesh {
                                                    std::span<const std::uint32_t> indices,
                                                    const ClusterOptions& options = {});
 
-    // Triangle k of the permuted mesh is triangle triangle_order()[k] of the mesh that was given.
+    // Reads positions from the caller's arrays from now on, and drops its copies and the order of triangles: it then
+    // needs about an eighth of the arrays' memory. `indices` are those of permute(), or name vertices at the same
+    // places. The arrays must outlive this object and its copies, and stay as they are.
+    //
+    // Errors: an index out of range (item = index), or a corner elsewhere than in the mesh that was cut (item = index);
+    // another number of indices. The object is then as it was.
+    [[nodiscard]] Result<void> lend(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices);
+
+    // Triangle k of the permuted mesh is triangle triangle_order()[k] of the mesh that was given. Empty after lend().
     [[nodiscard]] std::span<const std::uint32_t> triangle_order() const { return {order_.data(), order_.size()}; }
     // Writes the triangles of `indices`, three numbers each, in that order to `to`. Requires as many of both as were
-    // cut.
+    // cut. After lend(), what was lent is in order, and `to` becomes `indices`.
     void permute(std::span<const std::uint32_t> indices, std::span<std::uint32_t> to) const;
 
     [[nodiscard]] std::span<const Cluster> clusters() const { return {clusters_.data(), clusters_.size()}; }
+    [[nodiscard]] std::size_t triangle_count() const { return triangle_count_; }
+    [[nodiscard]] ClusterBox box_of(std::size_t cluster) const { return boxes_[cluster].unpacked(); }
     // Contains all clusters: an aligned box.
-    [[nodiscard]] const Cluster& bound() const { return bound_; }
+    [[nodiscard]] const ClusterBox& bound() const { return bound_; }
+    [[nodiscard]] const glm::vec3& largest() const { return largest_; }  // absolute coordinates
     // Differs for each call of cut() and deserialise() of the process; copies share it. 0: the mesh is empty.
     [[nodiscard]] std::uint64_t identity() const { return identity_; }
-    // Bytes that this object holds.
+    // Bytes that this object holds, without what was lent.
     [[nodiscard]] std::size_t memory() const;
 
     // Returns bytes from which deserialise() makes an equal object without cutting again, on machines of the same byte
@@ -65,46 +81,47 @@ class ClusteredMesh {
     // that the bytes belong to this mesh and are undamaged: boxes are not compared with the triangles.
     [[nodiscard]] static Result<ClusteredMesh> deserialise(std::span<const std::byte> bytes);
 
-    // A cluster, laid out for DepthCuller.
-    struct Patch {
-        std::uint32_t first_coordinate;  // x of all vertices, then y, then z, each padded to whole vectors
-        std::uint32_t first_block;
-        std::uint8_t vertex_count;  // equal positions count as one
-        std::uint8_t triangle_count;
+    // A box whose half edges are integers, up to 2^15, times a power of two. It contains the triangles exactly.
+    struct PackedBox {
+        float center[3];
+        // Two numbers each, the first in the low half: the nine coordinates of the half edges, then
+        // 2^8 · vertices of the cluster + the bits of the power's exponent in float.
+        std::uint32_t words[5];
+
+        [[nodiscard]] ClusterBox unpacked() const {
+            const float unit = std::bit_cast<float>((words[4] >> 16 & 0xff) << 23);
+            ClusterBox box{{center[0], center[1], center[2]}, {}};
+            for (std::size_t i = 0; i < 9; ++i) {
+                const auto units = static_cast<std::int16_t>(words[i / 2] >> 16 * (i % 2) & 0xffff);
+                box.half_edges[i / 3][static_cast<glm::length_t>(i % 3)] = static_cast<float>(units) * unit;
+            }
+            return box;
+        }
+        [[nodiscard]] std::uint32_t vertex_count() const { return words[4] >> 24; }  // equal positions count as one
     };
-    static constexpr std::uint32_t kLanes = 8;
-    // Eight triangles of a patch; those beyond its last have three equal corners.
-    struct Block {
-        std::uint8_t corners[3][kLanes];  // vertices of the patch
-        // The triangle across the edge from corner k to k + 1: 4 · triangle of the patch + its edge, or kNone.
-        std::uint8_t neighbors[3][kLanes];
-    };
-    static constexpr std::uint8_t kNone = 0xff;
-    struct Layout {
-        std::span<const Patch> patches;  // one a cluster
-        std::span<const float> coordinates;
-        std::span<const Block> blocks;
-        glm::vec3 largest;  // absolute coordinates
-    };
-    [[nodiscard]] Layout layout() const {
-        // By pointer and size, as above: a conversion from a vector takes compilers longer than the rest of the class.
-        return {{patches_.data(), patches_.size()},
-                {coordinates_.data(), coordinates_.size()},
-                {blocks_.data(), blocks_.size()},
-                largest_};
-    }
+
+    [[nodiscard]] std::span<const PackedBox> boxes() const { return {boxes_.data(), boxes_.size()}; }
 
   private:
     friend class PatchBuilder;
+    friend class PatchReader;
     friend struct StoredMesh;
     [[nodiscard]] static std::uint64_t next_identity();
+
     Vector<std::uint32_t> order_;
     Vector<Cluster> clusters_;
-    Cluster bound_;
+    std::size_t triangle_count_ = 0;
+    ClusterBox bound_;
     glm::vec3 largest_{0.0f};
-    Vector<Patch> patches_;  // one a cluster
-    Vector<float> coordinates_;
-    Vector<Block> blocks_;
+    Vector<PackedBox> boxes_;  // one a cluster
+    // Where its corners begin, and whether two of its triangles share an edge in one direction (patch.hpp).
+    Vector<std::uint32_t> firsts_;
+    Vector<std::uint32_t> corners_;
+    // Of one cluster after the other, with the first vertex of each; or those that are lent.
+    Vector<glm::vec3> vertices_;
+    Vector<std::uint32_t> first_vertices_;
+    std::span<const glm::vec3> lent_positions_;
+    std::span<const std::uint32_t> lent_indices_;
     ResetOnMove<std::uint64_t> identity_;
 };
 
