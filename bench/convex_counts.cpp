@@ -1,36 +1,28 @@
 // SPDX-License-Identifier: MIT
-// How many pairs of polytopes that nearly touch does each library answer wrongly? Exact arithmetic has the truth.
-// Prints a CSV: a row for each library and offset, a column for each decade of gap or overlap, which is proved for each
-// pair. Sizes are about 1.
+// How many pairs of polytopes that nearly touch does each library tell wrong? The pairs are those of `crofton verify
+// collide`, without triangles, and so is the truth: exact arithmetic. Prints a CSV: a row for each library and offset,
+// a column for each decade of gap or overlap. These are proven of each pair. Sizes are about 1.
 //   bench_convex_counts [PAIRS, 1000] | grep -v ^WARNING
 // PAIRS are those in each decade at each offset. Libraries that Debian lacks are asked where CMake finds them
 // installed: coal, Jolt, box3d (-DCMAKE_PREFIX_PATH=…). Where a hull's face is too narrow ODE writes warnings to the
 // same place.
 #include <cmath>
 #include <crofton/convex/query.hpp>
-#include <crofton/geometry/dyadic.hpp>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
-#include <oracle/polytopes.hpp>
 #include <string>
 #include <vector>
 
-#include "convex_pairs.hpp"
 #include "convex_peers.hpp"
+#include "verify/convex_pairs.hpp"
+#include "verify/exact_shapes.hpp"
 
 #if defined(CROFTON_HAVE_ODE)
 #include <ode/ode.h>
 #endif
 
-namespace crofton {
-
-// What the oracles ask of a number, for Dyadic.
-int sgn(const Dyadic& number) {
-    return number.sign();
-}
-
-namespace bench {
+namespace crofton::bench {
 namespace {
 
 using convex::ShapeAtPose;
@@ -54,21 +46,8 @@ bool answers_wrong(const Library& library, const ShapeAtPose& a, const ShapeAtPo
     }
 }
 
-bool has_triangle(const ConvexPairs::Pair& pair) {
+bool has_triangle(const cli::ConvexPairs::Pair& pair) {
     return pair.a.kind() == convex::Kind::triangle || pair.b.kind() == convex::Kind::triangle;
-}
-
-// A plane or a common point that the engine finds is a proof once it is checked; without one all separating axes are
-// tried.
-bool meet_exactly(const ShapeAtPose& a, const ShapeAtPose& b, const glm::dvec3& normal) {
-    // Guesses are made near a's origin, where coordinates are small.
-    const RigidTransform near_a{a.pose.rotation, glm::dvec3(0.0)};
-    const RigidTransform near_b{b.pose.rotation, b.pose.translation - a.pose.translation};
-    const convex::Distance d = convex::distance({a.shape, near_a}, {b.shape, near_b});
-    const convex::Penetration p = convex::penetration({a.shape, near_a}, {b.shape, near_b});
-    return oracle::decide_by<Dyadic>([&]<class Number>() {
-        return oracle::meet_in<Number>(a, b, {normal, d.normal}, {0.5 * (p.on_a + p.on_b), 0.5 * (d.on_a + d.on_b)});
-    });
 }
 
 // Whether the gap of two shapes, or their depth, is proven to lie between a tenth of `most` and `most`. A pair that was
@@ -86,14 +65,14 @@ bool lies_in_decade(const ShapeAtPose& a, const ShapeAtPose& b, bool meet, doubl
 }
 
 void count(std::vector<Library>& libraries, int decade, double offset, int pairs) {
-    ConvexPairs random(static_cast<std::uint64_t>(decade) * 1000 + static_cast<std::uint64_t>(offset));
+    cli::ConvexPairs random(static_cast<std::uint64_t>(decade) * 1000 + static_cast<std::uint64_t>(offset));
     for (Library& library : libraries) library.wrong_here = 0;
     for (int i = 0; i < pairs;) {
         const double gap = std::pow(10.0, -decade) * random.number(0.1, 1.0) * (random.bits() % 2 == 0 ? 1.0 : -1.0);
-        const ConvexPairs::Pair pair = random.next(32, gap, offset);
+        const cli::ConvexPairs::Pair pair = random.next(32, gap, offset);
         if (has_triangle(pair)) continue;
         const ShapeAtPose a = pair.placed_a(), b = pair.placed_b();
-        const bool truth = meet_exactly(a, b, pair.normal);
+        const bool truth = cli::meet_exactly(a, b, pair.normal);
         if (!lies_in_decade(a, b, truth, std::pow(10.0, -decade))) continue;
         ++i;
         for (Library& library : libraries) library.wrong_here += answers_wrong(library, a, b, truth);
@@ -102,8 +81,7 @@ void count(std::vector<Library>& libraries, int decade, double offset, int pairs
 }
 
 }  // namespace
-}  // namespace bench
-}  // namespace crofton
+}  // namespace crofton::bench
 
 int main(int argc, char** argv) {
     using namespace crofton::bench;

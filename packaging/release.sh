@@ -26,7 +26,7 @@ echo "$commit" >"$folder/.made/commit"
 export TMPDIR=$PWD/build/tmp LC_ALL=C.UTF-8  # debhelper's, which ccache looks at
 if command -v ccache >/dev/null; then
     export CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache
-    export CCACHE_DIR=${CCACHE_DIR:-$PWD/build/ccache} CCACHE_BASEDIR=$PWD/build CCACHE_NOHASHDIR=1
+    export CCACHE_DIR=${CCACHE_DIR:-$PWD/build/ccache} CCACHE_BASEDIR=${CCACHE_BASEDIR:-$PWD/build} CCACHE_NOHASHDIR=1
 fi
 as_debian() { (eval "$(make -s -f packaging/debian/rules print_flags)" && CFLAGS="$CFLAGS $CPPFLAGS" CXXFLAGS="$CXXFLAGS $CPPFLAGS" "$@"); }
 # The folder of Debian's shared libraries, for the languages that call them.

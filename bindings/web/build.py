@@ -36,8 +36,13 @@ default_fit_options fit_points triangulator_create triangulator_destroy triangul
 world_get_mesh world_find_occluders world_set_occluders world_add world_remove world_set world_set_transforms
 world_get_object world_get_statistics world_update default_world_options default_mesh_data
 default_object_description default_occlusion_options default_view_matrix default_draw_limits default_picture_view
-default_shadow_receivers default_view_request world_view world_raycast
-world_raycast_any world_overlap world_closest world_remove_mesh found_create found_destroy found_objects view_result_create view_result_destroy view_result_ids view_result_get_view
+default_shadow_receivers default_view_request world_view world_raycast world_raycast_any world_raycast_all world_overlap
+world_closest world_cast world_pairs world_contacts world_set_vertices world_remove_mesh world_add_node world_remove_node world_set_parent
+world_set_node_layers world_set_node_transforms default_region_object default_region_options region_prepare region_destroy
+world_attach world_detach world_object_in world_place_of default_shape_description shape_create shape_destroy
+clustered_mesh_create clustered_mesh_destroy clustered_mesh_serialise clustered_mesh_deserialise found_create found_destroy
+found_objects found_hits view_result_create view_result_destroy view_result_ids view_result_list view_result_get_view view_result_depth
+view_result_occluders
 web_error_item""".split()
 
 
@@ -84,7 +89,7 @@ def build(name, jobs):
         do(["cmake", "--build", folder / "dependencies", "-j", jobs, "--target", "install"], log)
         made.write_text(dependencies_digest())
     do(["cmake", "-S", ROOT, "-B", folder / "build", *options, f"-DCMAKE_CXX_FLAGS_RELEASE={OPTIMIZE} -DNDEBUG",
-        f"-DCROFTON_KERNEL_OPTIONS={KERNELS}", "-DCROFTON_CONTACTS=OFF", "-DCROFTON_RENDER=OFF", "-DCROFTON_SAMPLES=OFF",
+        f"-DCROFTON_KERNEL_OPTIONS={KERNELS}", "-DCROFTON_RENDER=OFF", "-DCROFTON_SAMPLES=OFF",
         "-DCROFTON_TESTS=OFF", "-DCROFTON_INSTALL=OFF"], log)
     targets = [f"crofton_{module}_objects" for module in MODULES]
     do(["ninja", "-C", folder / "build", f"-j{jobs}", "-k0", *targets], log)

@@ -18,10 +18,53 @@ export interface LoadOptions {
 export interface CullOptions { conservative?: boolean; treeOrder?: boolean }
 export interface ObjectHandle { readonly kind: 'object'; readonly index: number; readonly generation: number }
 export interface MeshHandle { readonly kind: 'mesh'; readonly index: number; readonly generation: number }
-export interface ObjectHit { object: ObjectHandle; user: number; t: number; point: number[]; triangle: number; normal: number[]; startedInside: boolean }
+export interface ObjectHit { object: ObjectHandle; user: number; t: number; point: number[]; triangle: number; child: number; normal: number[]; startedInside: boolean }
 export interface ObjectRef { object: ObjectHandle; user: number }
-/** One of the three. */
-export interface QueryShape { box?: BoxLike; sphere?: { center: Vector; radius: number }; capsule?: { begin: Vector; end: Vector; radius: number } }
+export interface NodeHandle { readonly kind: 'node'; readonly index: number; readonly generation: number }
+export interface AttachedRegion { readonly kind: 'region'; readonly index: number; readonly generation: number }
+export interface Sphere { center: Vector; radius: number }
+/** A shape where it stands; `transform` is a rotation and a translation. */
+export interface Placed { shape: Shape; transform?: Vector }
+/** One of the four. */
+export interface QueryShape { box?: BoxLike; sphere?: Sphere; capsule?: { begin: Vector; end: Vector; radius: number }; shape?: Shape; transform?: Vector }
+export interface Motion {
+    velocity?: Vector;
+    /** Radians a unit of time around this axis of the world, through `pivot`, in the shape's frame. */
+    spin?: Vector; pivot?: Vector;
+    /** 1. */
+    duration?: number;
+    /** How far apart they may still be at the time of a hit; 0: 1e-6. */
+    tolerance?: number;
+    maxSteps?: number; ignoreInitialOverlaps?: boolean;
+}
+export interface ShapeHit { object: ObjectHandle; user: number; time: number; normal: number[]; point: number[]; triangle: number; distance: number; unresolved: boolean }
+export interface Contact {
+    first: ObjectRef; second: ObjectRef; phase: 'began' | 'stayed' | 'ended'; inside: 'nothing' | 'first' | 'second' | 'partly';
+    /** Unit, from first to second; 0 if no direction is known. */
+    normal: number[]; depth: number;
+    points: { position: number[]; depth: number }[];
+    triangles: { first: number; second: number; begin: number[]; end: number[]; normal: number[] }[];
+    /** Of two shapes. `memory`: four numbers of yours, a view until the next update or growth of memory. */
+    shapePoints: { position: number[]; depth: number; normal: number[]; began: boolean; memory: Float32Array }[];
+}
+/** One of these. Solids of revolution have y as axis, with the origin half way up. */
+export type ShapeDescription = { sphere: { radius: number } } | { capsule: { radius: number; halfHeight: number } } |
+    { cylinder: { radius: number; halfHeight: number } } | { cone: { radius: number; halfHeight: number } } | { box: { halfExtents: Vector } } |
+    { triangle: Vector } | { hull: { positions: Float32Array; maxVertices?: number } } | { halfSpace: { normal: Vector; offset?: number } } |
+    { mesh: { positions: Float32Array; indices: ArrayLike<number>; frontOnly?: boolean } } |
+    { heightField: { columns: number; heights: Float32Array; materials?: Uint8Array; spacing?: Vector; frontOnly?: boolean } } |
+    { rounded: { core: Shape; radius: number } } | { compound: Placed[] };
+/** Geometry by which a mesh's objects hide others: opaque, within the drawn mesh. */
+export type Occluder = { box: BoxLike } | { walled: BoxLike } | { convex: Float32Array } |
+    { patch: { positions: Float32Array; indices: ArrayLike<number>; oneSided?: boolean } };
+export interface MeshOptions {
+    /** Views with a picture list the triangles by clusters; `oneSided`: back faces are not drawn; `precut`: the mesh's clusters, cut before. */
+    clusters?: boolean; oneSided?: boolean; precut?: ClusteredMesh;
+    /** False: queries and contacts take the mesh for its box, and `update` takes less time. */
+    triangles?: boolean;
+}
+export interface RegionObject { box?: BoxLike; sphere?: Sphere; shape?: Shape; mesh?: number; transform?: Vector; user?: number; layers?: number;
+    collidesWith?: number; occludes?: boolean; onlyOccludes?: boolean }
 export interface Triangulation {
     indices: Uint32Array;
     /** Total length of the diagonals. */
@@ -63,6 +106,15 @@ export interface Tree extends Owned {
 export interface Triangulator extends Owned {
     triangulate(points: Float64Array, ringEnds?: number[], method?: 'ear' | 'delaunay' | 'minimumWeight'): Triangulation;
 }
+/** Never changes; what uses it keeps what it needs. */
+export interface Shape extends Owned {}
+/** A mesh cut into clusters. */
+export interface ClusteredMesh extends Owned {
+    /** A copy, to store. */
+    readonly bytes: Uint8Array;
+}
+/** Many objects that do not move, for `World.attach`. */
+export interface Region extends Owned {}
 /** Views: valid until the next view or any growth of memory. */
 export interface ViewResult extends Owned {
     readonly length: number;
@@ -75,6 +127,16 @@ export interface ViewResult extends Owned {
     readonly triangleWords: Uint32Array;
     readonly statistics: Record<'nodesTested' | 'boxesTested' | 'acceptedWhole' | 'straddling' | 'exactTests' | 'falsePositives' |
         'occludersDrawn', number>;
+    /** A copy: bit v for view v of several, for each of `ids`. */
+    masks(world: World): Uint32Array;
+    /** The same as those above, of one view of several. */
+    occludedOf(view: number): Uint32Array;
+    trianglesOf(view: number): { object: number; cluster: number; triangles: bigint }[];
+    triangleWordsOf(view: number): Uint32Array;
+    statisticsOf(view: number): ViewResult['statistics'];
+    /** A copy of the depth buffer of a view with occlusion, row by row from the bottom: 1 / w, or below -1e38 where nothing is drawn. */
+    readonly depth: { width: number; height: number; nearness: Float32Array };
+    depthOf(view: number): ViewResult['depth'];
 }
 export type Bits = BigUint64Array | Uint32Array;
 export interface DrawLimits {
@@ -102,27 +164,50 @@ export interface ViewRequest {
 }
 export interface World extends Owned {
     readonly count: number;
-    addMesh(positions: Float32Array, indices: Uint32Array | Uint16Array, how?: { clusters?: boolean; oneSided?: boolean }): MeshHandle;
+    addMesh(positions: Float32Array, indices: Uint32Array | Uint16Array, how?: MeshOptions): MeshHandle;
+    setVertices(mesh: MeshHandle, positions: Float32Array): void;
     clustersOf(mesh: MeshHandle): { clusters: { firstTriangle: number; triangleCount: number }[]; triangleOrder: Uint32Array };
     /** Error: objects use the mesh. */
     removeMesh(mesh: MeshHandle): void;
     findOccluders(mesh: MeshHandle): void;
-    setConvexOccluder(mesh: MeshHandle, positions: Float32Array): void;
+    setOccluders(mesh: MeshHandle, occluders: Occluder[]): void;
+    /** The occluders that hide an object in a view alone; without an object all that were drawn. */
+    hiddenBy(visible: ViewResult, object?: ObjectHandle): (ObjectRef & { place: number })[];
+    addNode(node?: { parent?: NodeHandle; transform?: Vector; layers?: number }): NodeHandle;
+    /** With all nodes and objects below it. */
+    removeNode(node: NodeHandle): void;
+    setParent(node: NodeHandle, parent?: NodeHandle): void;
+    setNodeLayers(node: NodeHandle, layers: number): void;
+    setNodeTransform(node: NodeHandle, transform: Vector): void;
     /** `transform`: sixteen numbers by columns, the last row 0, 0, 0, 1. */
-    add(object: { box?: BoxLike; sphere?: { center: Vector; radius: number }; mesh?: MeshHandle; transform?: Vector;
-        user?: number; layers?: number; occludes?: boolean }): ObjectHandle;
+    add(object: { box?: BoxLike; sphere?: Sphere; mesh?: MeshHandle; shape?: Shape; transform?: Vector; node?: NodeHandle;
+        user?: number; layers?: number; collidesWith?: number; occludes?: boolean; onlyOccludes?: boolean; hidden?: boolean }): ObjectHandle;
     remove(object: ObjectHandle): void;
     setHidden(object: ObjectHandle, hidden: boolean): void;
     setUser(object: ObjectHandle, user: number): void;
     setLayers(object: ObjectHandle, layers: number): void;
+    setCollidesWith(object: ObjectHandle, layers: number): void;
+    setOccludes(object: ObjectHandle, occludes: boolean): void;
+    setMesh(object: ObjectHandle, mesh: MeshHandle): void;
+    setShape(object: ObjectHandle, shape: Shape | null): void;
     setBox(object: ObjectHandle, box: BoxLike): void;
     setTransform(object: ObjectHandle, transform: Vector): void;
     contains(object: ObjectHandle): boolean;
     update(): void;
     /** `camera` or `volume`, or both: then objects are tested against the volume, and hidden from the camera. */
-    view(request: ViewRequest, visible: ViewResult): ViewResult;
+    view(request: ViewRequest | ViewRequest[], visible: ViewResult): ViewResult;
     raycast(origin: Vector, direction: Vector, maxT?: number, layers?: number): ObjectHit | null;
+    raycastAll(origin: Vector, direction: Vector, maxT?: number, layers?: number): ObjectHit[];
     raycastAny(origin: Vector, direction: Vector, maxT?: number, layers?: number): boolean;
+    /** The first object that a moving shape meets; objects are at rest. */
+    cast(shape: Placed, motion: Motion, layers?: number): ShapeHit | null;
+    pairs(): { first: ObjectRef; second: ObjectRef }[];
+    contacts(): Contact[];
+    readonly statistics: Record<'objects' | 'resting' | 'moving' | 'boxesChanged' | 'outOfRange', number>;
+    attach(region: Region, origin?: Vector): AttachedRegion;
+    detach(region: AttachedRegion): void;
+    objectIn(region: AttachedRegion, place: number): ObjectHandle;
+    placeOf(object: ObjectHandle): { region: AttachedRegion; place: number };
     /** By index. Touching counts. */
     overlap(shape: QueryShape, layers?: number): ObjectRef[];
     /** `distance` is 0 for an object that overlaps. */
@@ -135,7 +220,10 @@ export interface Crofton {
     readonly Frustum: new (from?: { camera?: Camera; matrix?: Vector; depth?: Depth; origin?: Vector; layers?: number }) => Frustum;
     readonly Tree: new (boxes: Boxes) => Tree;
     readonly Triangulator: new () => Triangulator;
-    readonly World: new () => World;
+    readonly World: new (options?: { pairs?: boolean; contacts?: boolean; containment?: boolean; meshDepth?: boolean; contactMargin?: number }) => World;
+    readonly Shape: new (description: ShapeDescription) => Shape;
+    readonly ClusteredMesh: { new (positions: Float32Array, indices: ArrayLike<number>, how?: { maxTriangles?: number }): ClusteredMesh; new (bytes: Uint8Array): ClusteredMesh };
+    readonly Region: new (objects: RegionObject[], how?: { meshes?: ({ positions: Float32Array; indices: Uint32Array | Uint16Array } & MeshOptions)[]; findOccluders?: boolean }) => Region;
     readonly ViewResult: new () => ViewResult;
     cullBoxes(boxes: Boxes, frustum: Frustum, visible: ViewResult, how?: CullOptions): ViewResult;
     /** A verdict a box: 0 outside, 1 straddling, 2 inside. */

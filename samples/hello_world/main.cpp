@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The README's program: a yard of crates, a sphere that flies through it, and a camera.
+// The README's program: a hundred spheres in rows, one that flies through them, and a camera.
 #include <crofton/crofton.hpp>
 #include <cstdio>
 
@@ -17,7 +17,7 @@ int main() {
         world.view({.camera = camera}, visible).value();  // visible[i].object is what to draw
         for (const crofton::Contact& contact : world.contacts())
             if (contact.phase == crofton::ContactPhase::began)
-                std::printf("frame %d: the sphere touches crate %u\n", frame, contact.first.object.index);
+                std::printf("frame %d: the sphere touches object %u\n", frame, contact.first.object.index);
     }
     const auto hit = world.raycast({camera.position, {2.0, 0.0, -6.0}});
     if (hit) std::printf("the ray hits object %u at %.2f\n", hit->object.index, hit->t);

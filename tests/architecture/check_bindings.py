@@ -231,7 +231,7 @@ class Rust:
     def __init__(self, headers):
         self.headers = headers
         self.text = text_of("bindings/rust/src/sys.rs")
-        crate = all_text("bindings/rust/src", "[!s]*.rs")
+        crate = all_text("bindings/rust/src", "?[!y]*.rs")
         self.bodies = {}
         declared = re.compile(r"#\[repr\(C\)\](?:\s*#\[[^\n]*\])*\s*pub struct (\w+) \{(.*?)\n\s*\}", re.S)
         for prefix, text in (("", self.text), ("crate::", crate)):
@@ -299,8 +299,8 @@ SHARP_KINDS = {"double": "f64", "float": "f32", "ulong": "u64", "uint": "u32", "
                "UIntPtr": "usize", "IntPtr": "ptr"}
 SHARP_NAMES = {"Obb": "box", "ObjectHandle": "object", "NodeHandle": "node", "MeshHandle": "world_mesh",
                "ObjectData": "object_description", "MeshData": "mesh_data", "ClosestData": "closest_object",
-               "ContactData": "object_contact", "PictureData": "picture_view"}
-SHARP_OWN = {"Vector3", "Float3", "Edge"}  # three numbers each, where the headers have arrays
+               "ContactData": "object_contact", "PictureData": "picture_view", "ShapeMeshData": "mesh"}
+SHARP_OWN = {"Vector3", "Float3", "Float4", "Edge"}  # three or four numbers each, where the headers have arrays
 
 
 class Sharp:

@@ -403,6 +403,34 @@ TEST_SUITE("capi/depth") {
         CHECK(made == nullptr);
     }
 
+    TEST_CASE("a mesh comes back from its bytes without being cut, and damaged bytes are refused") {
+        const ClusteredMesh mesh = cut(crofton::testing::cube_mesh(), 4);
+        std::size_t count = 0, again = 0;
+        REQUIRE(crofton_clustered_mesh_serialise(mesh.get(), nullptr, 0, &count) == CROFTON_OK);
+        std::vector<std::uint8_t> bytes(count + 1, 77);
+        REQUIRE(crofton_clustered_mesh_serialise(mesh.get(), bytes.data(), count - 1, &again) == CROFTON_OK);
+        CHECK(again == count);
+        CHECK(bytes.front() == 77);  // too little room: nothing is written
+        REQUIRE(crofton_clustered_mesh_serialise(mesh.get(), bytes.data(), count, &again) == CROFTON_OK);
+        CHECK(bytes.back() == 77);
+        crofton_clustered_mesh* made = nullptr;
+        REQUIRE(crofton_clustered_mesh_deserialise(bytes.data(), count, &made) == CROFTON_OK);
+        const ClusteredMesh stored(made);
+        CHECK(order_of(stored) == order_of(mesh));
+        REQUIRE(clusters_of(stored).size() == clusters_of(mesh).size());
+        CHECK(std::memcmp(get(stored).clusters, get(mesh).clusters, clusters_of(mesh).size_bytes()) == 0);
+
+        crofton_clustered_mesh* none = nullptr;
+        for (std::size_t short_of = 0; short_of < count; ++short_of)
+            REQUIRE(crofton_clustered_mesh_deserialise(bytes.data(), short_of, &none) == CROFTON_PARSE);
+        CHECK(crofton_clustered_mesh_deserialise(nullptr, 0, &none) == CROFTON_PARSE);
+        CHECK(crofton_clustered_mesh_deserialise(nullptr, count, &none) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_clustered_mesh_deserialise(bytes.data(), count, nullptr) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_clustered_mesh_serialise(mesh.get(), nullptr, count, &again) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_clustered_mesh_serialise(mesh.get(), bytes.data(), count, nullptr) == CROFTON_INVALID_ARGUMENT);
+        CHECK(none == nullptr);
+    }
+
     TEST_CASE("lists without a place for the answer, and indices of another mesh or in place, are refused") {
         const TriangleMesh mesh = crofton::testing::cube_mesh();
         const ClusteredMesh clustered = cut(mesh);

@@ -204,6 +204,23 @@ TEST_SUITE("capi/shapes") {
         field.rows = 1;
         field.heights = flat;
         CHECK(shape_height_field(&field, 0, &none) == CROFTON_OUT_OF_RANGE);
+        // One bad triangle among good ones is an error too: C cannot ask which were left out.
+        float corners[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
+        std::uint32_t triangles[] = {0, 1, 2, 1, 3, 4};
+        auto surface = sized<crofton_mesh>();
+        surface.positions = corners;
+        surface.vertex_count = 4;
+        surface.indices = triangles;
+        surface.index_count = 6;
+        CHECK(shape_mesh(&surface, 0, &none) == CROFTON_OUT_OF_RANGE);
+        CHECK(crofton_last_error_item() == 5);
+        triangles[5] = 2;
+        corners[9] = kNaN;
+        CHECK(shape_mesh(&surface, 0, &none) == CROFTON_NON_FINITE);
+        CHECK(crofton_last_error_item() == 3);
+        corners[9] = 2e12f;
+        CHECK(shape_mesh(&surface, 0, &none) == CROFTON_OUT_OF_RANGE);
+        CHECK(crofton_last_error_item() == 1);
         CHECK(shape_compound(nullptr, nullptr, 0, &none) == CROFTON_EMPTY);
         const crofton_transform here = translation(0, 0, 0);
         const crofton_shape* no_child = nullptr;

@@ -120,6 +120,7 @@ void refuse_modules_queries(Table& table) {
 void refuse_depth(Table& table) {
     CROFTON_REFUSE(crofton_clustered_mesh_destroy);
     CROFTON_REFUSE(crofton_clustered_mesh_get);
+    CROFTON_REFUSE(crofton_clustered_mesh_serialise);
     CROFTON_REFUSE(crofton_depth_culler_destroy);
     CROFTON_REFUSE(crofton_depth_culler_find_visible);
     CROFTON_REFUSE(crofton_depth_culler_find_casters);
@@ -152,6 +153,7 @@ const std::set<std::string> kWithoutHandle = {
     "broadphase_create",
     "classify",
     "clustered_mesh_create",
+    "clustered_mesh_deserialise",
     "criterion_for_frustum",
     "criterion_for_rays",
     "default_shape_description",

@@ -26,14 +26,22 @@ inline std::vector<std::array<std::size_t, 3>> triangles_of(const convex::Shape&
     return result;
 }
 
-// Relative to `origin`.
+// A translation: velocity · time, not rounded.
+struct ExactWay {
+    glm::dvec3 velocity{0.0};
+    double time = 0.0;
+};
+
+// Relative to `origin`, at the end of a way.
 template <class Number>
-Polytope<Number> polytope(const convex::ShapeAtPose& placed, const glm::dvec3& origin) {
+Polytope<Number> polytope(const convex::ShapeAtPose& placed, const glm::dvec3& origin, const ExactWay& way = {}) {
     const RigidTransform& pose = placed.pose;
     Polytope<Number> result;
     const Vec3<Number> columns[3] = {vector_of<Number>(pose.rotation[0]), vector_of<Number>(pose.rotation[1]),
                                      vector_of<Number>(pose.rotation[2])};
-    const Vec3<Number> at = minus(vector_of<Number>(pose.translation), vector_of<Number>(origin));
+    Vec3<Number> at = minus(vector_of<Number>(pose.translation), vector_of<Number>(origin));
+    const Vec3<Number> velocity = vector_of<Number>(way.velocity);
+    for (std::size_t c = 0; c < 3; ++c) at[c] = at[c] + velocity[c] * Number(way.time);
     for (int i = 0; i < placed.shape.vertex_count(); ++i) {
         const Vec3<Number> v = vector_of<Number>(placed.shape.vertex(i));
         Vec3<Number> image;
@@ -149,13 +157,13 @@ bool meet_by_axes(const Polytope<Number>& a, const Polytope<Number>& b) {
     return !are_parted_in_a_plane(a, b);
 }
 
-// By a plane across one of the `normals`, or a common point, a's place plus one of the `points`; else by all axes.
-// Throws Undecided where the numbers cannot tell.
+// By a plane across one of the `normals`, or a common point, a's place plus one of the `points`; else by all axes. b
+// stands at the end of a way. Throws Undecided where the numbers cannot tell.
 template <class Number>
 bool meet_in(const convex::ShapeAtPose& a, const convex::ShapeAtPose& b, const std::vector<glm::dvec3>& normals,
-             const std::vector<glm::dvec3>& points) {
+             const std::vector<glm::dvec3>& points, const ExactWay& way_of_b = {}) {
     const glm::dvec3& origin = a.pose.translation;
-    const auto of_a = polytope<Number>(a, origin), of_b = polytope<Number>(b, origin);
+    const auto of_a = polytope<Number>(a, origin), of_b = polytope<Number>(b, origin, way_of_b);
     for (const glm::dvec3& n : normals)
         if (parts(of_a, of_b, vector_of<Number>(n)) == 1) return false;
     for (const glm::dvec3& p : points) {

@@ -77,7 +77,7 @@ namespace Crofton {
         }
 
         // Members of crofton_world_set.
-        internal const uint SetUser = 1, SetLayers = 2, SetCollidesWith = 4, SetHidden = 8, SetOccludes = 16, SetMesh = 32, SetBound = 64;
+        internal const uint SetUser = 1, SetLayers = 2, SetCollidesWith = 4, SetHidden = 8, SetOccludes = 16, SetMesh = 32, SetBound = 64, SetShape = 128;
 
         [StructLayout(LayoutKind.Sequential)]
         internal struct ObjectInfo {
@@ -105,7 +105,133 @@ namespace Crofton {
             public ulong ObjectCount, OccludersWaiting;
         }
 
-        internal const uint QueryShapeBox = 0, QueryShapeSphere = 1, QueryShapeCapsule = 2;
+        internal const uint QueryShapeBox = 0, QueryShapeSphere = 1, QueryShapeCapsule = 2, QueryShapeShape = 3;
+        internal const uint ShapeSphere = 0, ShapeCapsule = 1, ShapeCylinder = 2, ShapeCone = 3, ShapeBox = 4, ShapeTriangle = 5, ShapeHull = 6, ShapeHalfSpace = 7,
+            ShapeMesh = 8, ShapeHeightField = 9, ShapeCompound = 10, ShapeRounded = 11;
+        internal const uint CastMiss = 0, CastUnresolved = 2;
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct ShapeMeshData {
+            public UIntPtr Size;
+            public IntPtr Positions;
+            public UIntPtr VertexCount;
+            public IntPtr Indices;
+            public UIntPtr IndexCount;
+            public IntPtr Name;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct HeightFieldData {
+            public UIntPtr Size;
+            public uint Columns, Rows;
+            public IntPtr Heights, Materials;
+            public double SpacingX, SpacingZ;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct ShapeDescriptionData {
+            public UIntPtr Size;
+            public uint Kind;
+            public float Radius, HalfHeight;
+            public Float3 HalfExtents, CornersA, CornersB, CornersC;
+            public Vector3 PlaneNormal;
+            public double PlaneOffset;
+            public IntPtr Points;
+            public UIntPtr PointCount;
+            public uint MaxVertices;
+            public float FaceTolerance;
+            public IntPtr Mesh, HeightField;
+            public uint FrontOnly;
+            public IntPtr Core, Children, Poses;
+            public UIntPtr ChildCount;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct ShapeInfo {
+            public UIntPtr Size;
+            public uint Kind, VertexCount, FaceCount, PartCount;
+            public Vector3 Min, Max;
+            public double MaxOvershoot;
+            public IntPtr Vertices, Indices;
+            public UIntPtr IndexCount;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct MassPropertiesData {
+            public UIntPtr Size;
+            public double Volume;
+            public Vector3 Center, Inertia0, Inertia1, Inertia2;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct PlacedData { public IntPtr Shape, Pose; }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct ShapeDistanceData {
+            public UIntPtr Size;
+            public double Distance, Lower, Upper;
+            public Vector3 OnA, OnB, Normal;
+            public Part PartA, PartB;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct ShapePenetrationData {
+            public UIntPtr Size;
+            public double Depth, Lower, Upper;
+            public Vector3 OnA, OnB, Normal;
+            public Part PartA, PartB;
+            public uint Overlapping;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct CastOptionsData {
+            public UIntPtr Size;
+            public double Duration, Tolerance;
+            public uint MaxSteps, IgnoreInitialOverlaps;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct ImpactData {
+            public UIntPtr Size;
+            public double Time, Distance;
+            public Vector3 OnA, OnB, Normal;
+            public Part PartA, PartB;
+            public uint Result, Steps;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct ShapeRayHitData {
+            public UIntPtr Size;
+            public double T;
+            public Vector3 Point, Normal;
+            public Part Part;
+            public uint StartedInside;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct ShapeHitData {
+            public UIntPtr Size;
+            public ObjectHandle Object;
+            public ulong User;
+            public double Time;
+            public Vector3 Normal, Point;
+            public uint Triangle, Result;
+            public double Distance;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct OccluderData {
+            public UIntPtr Size;
+            public uint Kind, IsOneSided;
+            public IntPtr Positions;
+            public UIntPtr PositionCount;
+            public IntPtr Indices;
+            public UIntPtr IndexCount;
+            public Obb Box;
+            public uint Edges, HasPiece, HasEyes;
+            public Vector3 PieceMin, PieceMax, EyesMin, EyesMax;
+            public double MeanShadow, Gain;
+        }
 
         [StructLayout(LayoutKind.Sequential)]
         internal struct QueryShapeData {
@@ -113,7 +239,7 @@ namespace Crofton {
             public Obb Box;
             public Vector3 Begin, End;
             public double Radius;
-            public IntPtr Shape, Pose;
+            public PlacedData Shape;
         }
 
         [StructLayout(LayoutKind.Sequential)]
@@ -272,6 +398,17 @@ namespace Crofton {
         [DllImport(Library)] internal static extern int crofton_fit_points(float[] points, UIntPtr count, uint isDouble, ref FitOptionsData options, out Obb box);
         [DllImport(Library)] internal static extern int crofton_fit_points(double[] points, UIntPtr count, uint isDouble, ref FitOptionsData options, out Obb box);
 
+        [DllImport(Library)] internal static extern ShapeDescriptionData crofton_default_shape_description();
+        [DllImport(Library)] internal static extern int crofton_shape_create(ref ShapeDescriptionData description, out ShapeHandle shape);
+        [DllImport(Library)] internal static extern int crofton_shape_destroy(IntPtr shape);
+        [DllImport(Library)] internal static extern int crofton_shape_get_info(ShapeHandle shape, ref ShapeInfo info);
+        [DllImport(Library)] internal static extern int crofton_shape_get_mass(ShapeHandle shape, ref MassPropertiesData mass);
+        [DllImport(Library)] internal static extern int crofton_shapes_meet(ref PlacedData a, ref PlacedData b, IntPtr cache, out int meet);
+        [DllImport(Library)] internal static extern int crofton_shapes_distance(ref PlacedData a, ref PlacedData b, IntPtr cache, ref ShapeDistanceData distance);
+        [DllImport(Library)] internal static extern int crofton_shapes_penetration(ref PlacedData a, ref PlacedData b, IntPtr cache, ref ShapePenetrationData penetration);
+        [DllImport(Library)] internal static extern int crofton_shapes_cast(ref PlacedData a, ref Motion motionA, ref PlacedData b, ref Motion motionB, ref CastOptionsData options, ref ImpactData impact);
+        [DllImport(Library)] internal static extern int crofton_shape_raycast(ref PlacedData shape, ref Ray ray, ref ShapeRayHitData hit);
+
         [DllImport(Bake)] internal static extern int crofton_triangulator_create(out TriangulatorHandle triangulator);
         [DllImport(Bake)] internal static extern int crofton_triangulator_destroy(IntPtr triangulator);
         [DllImport(Bake)] internal static extern int crofton_triangulate(TriangulatorHandle triangulator, ref PolygonData polygon, uint method, ref TriangulationData result);
@@ -285,6 +422,7 @@ namespace Crofton {
         [DllImport(Library)] internal static extern int crofton_world_add_node(WorldHandle world, NodeHandle[] parent, ref Transform transform, uint layers, out NodeHandle node);
         [DllImport(Library)] internal static extern int crofton_world_remove_node(WorldHandle world, NodeHandle node);
         [DllImport(Library)] internal static extern int crofton_world_set_parent(WorldHandle world, NodeHandle node, NodeHandle[] parent);
+        [DllImport(Library)] internal static extern int crofton_world_set_node_layers(WorldHandle world, NodeHandle node, uint layers);
         [DllImport(Library)] internal static extern int crofton_world_set_node_transforms(WorldHandle world, NodeHandle[] nodes, UIntPtr stride, Transform[] transforms, UIntPtr transformStride, UIntPtr count);
         [DllImport(Library)] internal static extern int crofton_world_add(WorldHandle world, ref ObjectData description, out ObjectHandle handle);
         [DllImport(Library)] internal static extern RegionObjectData crofton_default_region_object();
@@ -303,6 +441,11 @@ namespace Crofton {
         [DllImport(Library)] internal static extern int crofton_world_get_statistics(WorldHandle world, ref WorldStatisticsData statistics);
         [DllImport(Library)] internal static extern int crofton_world_get_object(WorldHandle world, ObjectHandle handle, ref ObjectInfo info);
         [DllImport(Library)] internal static extern int crofton_world_get_mesh(WorldHandle world, MeshHandle mesh, ref MeshInfo info);
+        [DllImport(Library)] internal static extern int crofton_world_cast(WorldHandle world, ref PlacedData probe, ref Motion motion, ref CastOptionsData options, uint layers, ref ShapeHitData hit);
+        [DllImport(Library)] internal static extern int crofton_world_set_occluders(WorldHandle world, MeshHandle mesh, OccluderData[] occluders, UIntPtr count);
+        [DllImport(Library)] internal static extern int crofton_world_get_occluder(WorldHandle world, MeshHandle mesh, UIntPtr place, ref OccluderData occluder);
+        [DllImport(Library)] internal static extern int crofton_view_result_occluders(VisibleHandle visible, WorldHandle world, ObjectHandle[] hidden, [Out] OccluderRef[] occluders, UIntPtr capacity, out UIntPtr count);
+        [DllImport(Library)] internal static extern int crofton_view_result_depth(VisibleHandle visible, UIntPtr view, [Out] float[] nearness, UIntPtr capacity);
         [DllImport(Library)] internal static extern int crofton_world_find_occluders(WorldHandle world, MeshHandle mesh, IntPtr options);
 
         [DllImport(Library)] internal static extern int crofton_view_result_create(out VisibleHandle visible);
@@ -341,6 +484,9 @@ namespace Crofton {
     }
     internal sealed class RegionHandle : OwnedHandle {
         protected override int Destroy(IntPtr raw) { return Native.crofton_region_destroy(raw); }
+    }
+    internal sealed class ShapeHandle : OwnedHandle {
+        protected override int Destroy(IntPtr raw) { return Native.crofton_shape_destroy(raw); }
     }
     internal sealed class FoundHandle : OwnedHandle {
         protected override int Destroy(IntPtr raw) { return Native.crofton_found_destroy(raw); }

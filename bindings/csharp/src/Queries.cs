@@ -32,6 +32,13 @@ namespace Crofton {
             Native.ViewInfo info = Info(view);
             return Library.ToArray<VisibleCluster>(info.Triangles, info.TriangleClusterCount);
         }
+        /// <summary>Copies the depth buffer of a view. Error: it had no occlusion.</summary>
+        public DepthBuffer Depth(int view = 0) {
+            Native.ViewInfo info = Info(view);
+            var nearness = new float[info.DepthWidth * info.DepthHeight];
+            Library.Check(Native.crofton_view_result_depth(Handle, (UIntPtr)view, nearness, (UIntPtr)nearness.Length));
+            return new DepthBuffer { Width = (int)info.DepthWidth, Height = (int)info.DepthHeight, Nearness = nearness };
+        }
         Native.ViewInfo Info(int view) {
             var info = new Native.ViewInfo { Size = Native.SizeOf<Native.ViewInfo>() };
             Library.Check(Native.crofton_view_result_get_view(Handle, (UIntPtr)view, ref info));
@@ -88,6 +95,9 @@ namespace Crofton {
     /// <summary>The phase of a contact: it began in this update, began in an earlier one, or has ended.</summary>
     public enum Phase : uint { Began = 0, Stayed = 1, Ended = 2 }
 
+    /// <summary>Which of two objects lies inside the other, if their surfaces do not overlap; Partly: some pieces of a mesh do.</summary>
+    public enum Containment : byte { Nothing = 0, FirstInside = 1, SecondInside = 2, Partly = 3 }
+
     /// <summary>A contact point, midway between the surfaces, and its depth.</summary>
     [StructLayout(LayoutKind.Sequential)]
     public struct ContactPoint {
@@ -102,16 +112,50 @@ namespace Crofton {
         public Vector3 Begin, End, Normal;
     }
 
+    /// <summary>A vertex (Kind 0), an edge (1) or a face (2) of a shape, by its number.</summary>
+    [StructLayout(LayoutKind.Sequential)]
+    public struct Feature {
+        public byte Kind;
+        byte unused;
+        public ushort Index;
+    }
+
+    /// <summary>Four numbers of yours.</summary>
+    [StructLayout(LayoutKind.Sequential)]
+    public struct Float4 { public float X, Y, Z, W; }
+
+    /// <summary>A contact point of two shapes, for a physics engine. Features and parts are its id, which stays the same while the same features touch.</summary>
+    [StructLayout(LayoutKind.Sequential)]
+    public struct TrackedPoint {
+        /// <summary>Midway between the surfaces, in the world.</summary>
+        public Vector3 Position;
+        /// <summary>Along the normal; negative: a gap.</summary>
+        public double Depth;
+        public Feature OnA, OnB;
+        public Part PartA, PartB;
+        /// <summary>Unit, from first to second.</summary>
+        public Vector3 Normal;
+        byte began, unused0, unused1, unused2;
+        /// <summary>Yours: 0 when the point begins, kept while it stays; World.SetMemories writes it.</summary>
+        public Float4 Memory;
+        /// <summary>True if no point of the last update has its id.</summary>
+        public bool Began { get { return began != 0; } }
+    }
+
     /// <summary>Two objects that touch, or that have ended touching in this update.</summary>
     public sealed class Contact {
         public ObjectRef First, Second;
         public Phase Phase;
+        /// <summary>Whether one object lies inside the other.</summary>
+        public Containment Inside;
         /// <summary>Unit, from first to second; 0 if no direction is known.</summary>
         public Vector3 Normal;
         /// <summary>Moving the second by Depth * Normal ends the contact; between meshes it is the deepest point's depth unless MeshDepth is set.</summary>
         public double Depth;
         public ContactPoint[] Points;
         public MeshContact[] Triangles;
+        /// <summary>For two shapes.</summary>
+        public TrackedPoint[] ShapePoints;
     }
 
     /// <summary>Options of occlusion culling.</summary>
@@ -260,96 +304,6 @@ namespace Crofton {
                 });
             }
         }
-        // Holds what requests point to during a call.
-        sealed class Copies : IDisposable {
-            readonly System.Collections.Generic.List<IntPtr> memory = new System.Collections.Generic.List<IntPtr>();
-            readonly System.Collections.Generic.List<GCHandle> pinned = new System.Collections.Generic.List<GCHandle>();
-            readonly System.Collections.Generic.List<SafeHandle> held = new System.Collections.Generic.List<SafeHandle>();
-
-            internal Native.ViewRequestData Of(ViewRequest request) {
-                Native.ViewRequestData data = Native.crofton_default_view_request();
-                data.Layers = request.Layers;
-                data.Conservative = request.Conservative ? 1u : 0u;
-                data.TreeOrder = request.TreeOrder ? 1u : 0u;
-                if (request.Camera != null) data.Camera = Copied(request.Camera.Data());
-                if (request.Matrix != null) data.Matrix = Copied(Of(request.Matrix));
-                if (request.Volume != null) data.Volume = Copied(request.Volume.Data);
-                if (request.Occlusion != null) data.Occlusion = Copied(request.Occlusion.Data());
-                if (request.Limits != null) data.Limits = Copied(Of(request.Limits));
-                if (request.Picture != null) {
-                    Native.PictureData picture = Native.crofton_default_picture_view();
-                    picture.Width = request.Picture.Width;
-                    picture.Height = request.Picture.Height;
-                    picture.Depth = (uint)request.Picture.Depth;
-                    picture.Samples = request.Picture.Samples;
-                    picture.WorkLimit = request.Picture.WorkLimit;
-                    data.Picture = Copied(picture);
-                }
-                if (request.Receivers != null) data.Receivers = Copied(Of(request.Receivers));
-                if (request.CandidateMask != null) {
-                    data.CandidateMask = Pinned(request.CandidateMask);
-                    data.CandidateWords = (UIntPtr)request.CandidateMask.Length;
-                }
-                return data;
-            }
-            Native.ShadowReceiversData Of(ShadowReceivers receivers) {
-                Library.NotNull(receivers.Seen, "Seen");
-                Native.ShadowReceiversData data = Native.crofton_default_shadow_receivers();
-                data.Seen = Held(receivers.Seen.Handle);
-                data.Radius = receivers.Radius;
-                return data;
-            }
-            Native.ViewMatrixData Of(ViewMatrix matrix) {
-                if (matrix.ToClip == null || matrix.ToClip.Length != 16) throw new ArgumentException("a matrix has sixteen numbers", "Matrix");
-                Native.ViewMatrixData data = Native.crofton_default_view_matrix();
-                data.Doubles = Pinned(matrix.ToClip);
-                data.IsRowMajor = matrix.IsRowMajor ? 1u : 0u;
-                data.Depth = (uint)matrix.Depth;
-                data.Origin = matrix.Origin;
-                return data;
-            }
-            Native.DrawLimitsData Of(DrawLimits limits) {
-                if (limits.LayerDistances != null && limits.LayerDistances.Length != 32)
-                    throw new ArgumentException("there are 32 layers", "LayerDistances");
-                Native.DrawLimitsData data = Native.crofton_default_draw_limits();
-                data.Eye = limits.Eye;
-                if (!double.IsPositiveInfinity(limits.MaxDistanceInRadii)) data.MaxDistanceInRadii = limits.MaxDistanceInRadii;
-                data.LeastRadius = limits.LeastRadius;
-                data.Hysteresis = limits.Hysteresis;
-                if (limits.LayerDistances != null) data.LayerDistances = Pinned(limits.LayerDistances);
-                if (limits.ItemDistances != null) {
-                    data.ItemDistances = Pinned(limits.ItemDistances);
-                    data.ItemCount = (UIntPtr)limits.ItemDistances.Length;
-                }
-                if (limits.DrawnBefore != null) {
-                    data.DrawnBefore = Pinned(limits.DrawnBefore);
-                    data.DrawnWordCount = (UIntPtr)limits.DrawnBefore.Length;
-                }
-                return data;
-            }
-            IntPtr Copied<T>(T data) where T : struct {
-                IntPtr copy = Marshal.AllocHGlobal(Marshal.SizeOf(typeof(T)));
-                memory.Add(copy);
-                Marshal.StructureToPtr(data, copy, false);
-                return copy;
-            }
-            IntPtr Held(SafeHandle handle) {
-                bool isHeld = false;
-                handle.DangerousAddRef(ref isHeld);
-                held.Add(handle);
-                return handle.DangerousGetHandle();
-            }
-            IntPtr Pinned(Array numbers) {
-                var handle = GCHandle.Alloc(numbers, GCHandleType.Pinned);
-                pinned.Add(handle);
-                return handle.AddrOfPinnedObject();
-            }
-            public void Dispose() {
-                foreach (IntPtr copy in memory) Marshal.FreeHGlobal(copy);
-                foreach (GCHandle handle in pinned) handle.Free();
-                foreach (SafeHandle handle in held) handle.DangerousRelease();
-            }
-        }
 
         /// <summary>Returns the nearest hit of a ray with triangles of meshes, boxes and spheres.</summary>
         public ObjectHit Raycast(Ray ray, uint layers = AllLayers) { return Raycast(new[] { ray }, layers)[0]; }
@@ -389,10 +343,20 @@ namespace Crofton {
         public ObjectRef[] OverlapCapsule(Vector3 begin, Vector3 end, double radius, uint layers = AllLayers) {
             return Overlap(new Native.QueryShapeData { Kind = Native.QueryShapeCapsule, Begin = begin, End = end, Radius = radius }, layers);
         }
-        /// <summary>The object nearest to a sphere, no farther than a distance; null where there is none.</summary>
+        /// <summary>The object nearest to a box, no farther than a distance; null where there is none.</summary>
+        public Closest? Closest(Obb box, double maxDistance = double.PositiveInfinity, uint layers = AllLayers) {
+            return Closest(new Native.QueryShapeData { Kind = Native.QueryShapeBox, Box = box }, maxDistance, layers);
+        }
+        /// <summary>The object nearest to a sphere.</summary>
         public Closest? ClosestToSphere(Vector3 center, double radius, double maxDistance = double.PositiveInfinity, uint layers = AllLayers) {
+            return Closest(new Native.QueryShapeData { Kind = Native.QueryShapeSphere, Begin = center, Radius = radius }, maxDistance, layers);
+        }
+        /// <summary>The object nearest to a capsule.</summary>
+        public Closest? ClosestToCapsule(Vector3 begin, Vector3 end, double radius, double maxDistance = double.PositiveInfinity, uint layers = AllLayers) {
+            return Closest(new Native.QueryShapeData { Kind = Native.QueryShapeCapsule, Begin = begin, End = end, Radius = radius }, maxDistance, layers);
+        }
+        Closest? Closest(Native.QueryShapeData shape, double maxDistance, uint layers) {
             var data = new Native.ClosestData { Size = Native.SizeOf<Native.ClosestData>() };
-            var shape = new Native.QueryShapeData { Kind = Native.QueryShapeSphere, Begin = center, Radius = radius };
             Library.Check(Native.crofton_world_closest(Handle, ref shape, maxDistance, layers, ref data));
             if (data.Object.Index == uint.MaxValue) return null;
             return new Closest {
@@ -417,10 +381,27 @@ namespace Crofton {
                 Library.Check(Native.crofton_world_contacts(Handle, out contacts, out count));
                 Native.ContactData[] all = Library.ToArray<Native.ContactData>(contacts, count);
                 return Array.ConvertAll(all, c => new Contact {
-                    First = c.First, Second = c.Second, Phase = (Phase)c.Phase, Normal = c.Normal, Depth = c.Depth,
+                    First = c.First, Second = c.Second, Phase = (Phase)c.Phase, Inside = (Containment)c.Inside, Normal = c.Normal, Depth = c.Depth,
                     Points = Library.ToArray<ContactPoint>(c.Points, c.PointCount),
-                    Triangles = Library.ToArray<MeshContact>(c.Triangles, c.TriangleCount)
+                    Triangles = Library.ToArray<MeshContact>(c.Triangles, c.TriangleCount),
+                    ShapePoints = Library.ToArray<TrackedPoint>(c.ShapePoints, c.ShapePointCount)
                 });
+            });
+        }
+
+        /// <summary>Sets the Memory of the contact points of all pairs of shapes, such as impulses for a warm start.</summary>
+        public void SetMemories(Func<ObjectRef, ObjectRef, TrackedPoint, Float4> memoryOf) {
+            Library.NotNull(memoryOf, "memoryOf");
+            Change(() => {
+                IntPtr contacts;
+                UIntPtr count;
+                Library.Check(Native.crofton_world_contacts(Handle, out contacts, out count));
+                int size = Marshal.SizeOf(typeof(TrackedPoint)), place = (int)Marshal.OffsetOf(typeof(TrackedPoint), "Memory");
+                foreach (var c in Library.ToArray<Native.ContactData>(contacts, count)) {
+                    TrackedPoint[] points = Library.ToArray<TrackedPoint>(c.ShapePoints, c.ShapePointCount);
+                    for (int i = 0; i < points.Length; ++i)
+                        Marshal.StructureToPtr(memoryOf(c.First, c.Second, points[i]), new IntPtr(c.ShapePoints.ToInt64() + (long)i * size + place), false);
+                }
             });
         }
 

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 using System;
-using System.Collections.Generic;
 using System.Runtime.InteropServices;
 
 namespace Crofton {
-    /// <summary>An object of a Region: a bound, or a mesh of the region's under a transform; relative to the region's origin.</summary>
+    /// <summary>An object of a Region: a bound, or a mesh of the region's or a shape under a transform; relative to the region's origin.</summary>
     public struct RegionObject {
-        internal Bound Shape;
+        internal Bound Bound;
+        internal Shape Shape;
+        internal bool OnlyOccludes;
         internal int Mesh;
         internal Transform Transform;
         internal ulong User;
@@ -14,12 +15,17 @@ namespace Crofton {
 
         /// <summary>An object with only a bound; `user` is returned with every answer.</summary>
         public static RegionObject Of(Bound bound, ulong user = 0, uint layers = World.AllLayers, uint collidesWith = World.AllLayers) {
-            return new RegionObject { Shape = bound, Mesh = -1, User = user, Layers = layers, CollidesWith = collidesWith };
+            return new RegionObject { Bound = bound, Mesh = -1, User = user, Layers = layers, CollidesWith = collidesWith };
         }
-        /// <summary>An object with the mesh at that place among the region's.</summary>
-        public static RegionObject Of(int mesh, Transform transform, ulong user = 0, uint layers = World.AllLayers, uint collidesWith = World.AllLayers) {
+        /// <summary>An object with only a shape, not infinite ground.</summary>
+        public static RegionObject Of(Shape shape, Transform transform, ulong user = 0, uint layers = World.AllLayers, uint collidesWith = World.AllLayers) {
+            Library.NotNull(shape, "shape");
+            return new RegionObject { Shape = shape, Mesh = -1, Transform = transform, User = user, Layers = layers, CollidesWith = collidesWith };
+        }
+        /// <summary>An object with the mesh at that place among the region's. onlyOccludes: it only hides others.</summary>
+        public static RegionObject Of(int mesh, Transform transform, ulong user = 0, uint layers = World.AllLayers, uint collidesWith = World.AllLayers, bool onlyOccludes = false) {
             if (mesh < 0) throw new ArgumentOutOfRangeException("mesh");
-            return new RegionObject { Mesh = mesh, Transform = transform, User = user, Layers = layers, CollidesWith = collidesWith };
+            return new RegionObject { Mesh = mesh, Transform = transform, User = user, Layers = layers, CollidesWith = collidesWith, OnlyOccludes = onlyOccludes };
         }
     }
 
@@ -40,14 +46,9 @@ namespace Crofton {
         public Region(RegionObject[] objects, RegionMesh[] meshes = null, bool findOccluders = false) {
             Library.NotNull(objects, "objects");
             Library.Load();
-            var memory = new List<GCHandle>();
-            Func<object, IntPtr> pinned = array => {
-                memory.Add(GCHandle.Alloc(array, GCHandleType.Pinned));
-                return memory[memory.Count - 1].AddrOfPinnedObject();
-            };
-            try {
+            using (var memory = new Copies()) {
                 var transforms = new Transform[objects.Length];
-                IntPtr first = pinned(transforms);
+                IntPtr first = memory.Pinned(transforms);
                 var data = new Native.RegionObjectData[objects.Length];
                 for (int i = 0; i < data.Length; ++i) {
                     RegionObject given = objects[i];
@@ -55,11 +56,13 @@ namespace Crofton {
                     data[i].User = given.User;
                     data[i].Layers = given.Layers;
                     data[i].CollidesWith = given.CollidesWith;
-                    if (given.Mesh < 0) {
-                        data[i].Bound = given.Shape.Data;
+                    if (given.Mesh < 0 && given.Shape == null) {
+                        data[i].Bound = given.Bound.Data;
                         continue;
                     }
-                    data[i].Mesh = (uint)given.Mesh;
+                    if (given.Mesh >= 0) data[i].Mesh = (uint)given.Mesh;
+                    else data[i].Shape = memory.Held(given.Shape.Handle);
+                    data[i].OnlyOccludes = given.OnlyOccludes ? 1u : 0u;
                     transforms[i] = given.Transform;
                     data[i].Transform = new IntPtr(first.ToInt64() + (long)i * Marshal.SizeOf(typeof(Transform)));
                 }
@@ -67,24 +70,20 @@ namespace Crofton {
                 var described = new Native.MeshData[meshes.Length];
                 for (int i = 0; i < meshes.Length; ++i) {
                     Library.NotNull(meshes[i], "meshes");
-                    Library.NotNull(meshes[i].Positions, "meshes");
                     Library.NotNull(meshes[i].Indices, "meshes");
-                    if (meshes[i].Positions.Length % 3 != 0) throw new ArgumentException("positions are x, y, z of each vertex", "meshes");
                     described[i] = Native.crofton_default_mesh_data();
-                    described[i].Positions = pinned(meshes[i].Positions);
-                    described[i].PositionCount = (UIntPtr)(meshes[i].Positions.Length / 3);
-                    described[i].Indices = pinned(meshes[i].Indices);
+                    described[i].PositionCount = Copies.Triples(meshes[i].Positions, "meshes");
+                    described[i].Positions = memory.Pinned(meshes[i].Positions);
+                    described[i].Indices = memory.Pinned(meshes[i].Indices);
                     described[i].IndexCount = (UIntPtr)meshes[i].Indices.Length;
                     described[i].Clusters = meshes[i].Clusters ? 1u : 0u;
                     described[i].OneSided = meshes[i].OneSided ? 1u : 0u;
                 }
                 Native.RegionOptionsData options = Native.crofton_default_region_options();
-                options.Meshes = pinned(described);
+                options.Meshes = memory.Pinned(described);
                 options.MeshCount = (UIntPtr)described.Length;
                 options.FindOccluders = findOccluders ? 1u : 0u;
                 Library.Check(Native.crofton_region_prepare(data, (UIntPtr)data.Length, ref options, IntPtr.Zero, out Handle));
-            } finally {
-                foreach (GCHandle one in memory) one.Free();
             }
         }
         /// <summary>Frees the region; a World that it is attached to keeps what it needs.</summary>

@@ -54,6 +54,18 @@ namespace Crofton {
         public bool MeshDepth = false;
         /// <summary>An update with more pairs fails.</summary>
         public ulong MaxPairs = 1ul << 24;
+        /// <summary>Gaps up to this between shapes are contacts.</summary>
+        public double ContactMargin;
+    }
+
+    /// <summary>As of the last update.</summary>
+    public struct Statistics {
+        /// <summary>All objects; those at rest and those that move, hidden ones not counted.</summary>
+        public ulong Objects, Resting, Moving;
+        /// <summary>Boxes that the last update changed.</summary>
+        public uint BoxesChanged;
+        /// <summary>Objects whose product of transforms is out of range: hidden until it is valid.</summary>
+        public uint OutOfRange;
     }
 
     /// <summary>Holds a game's objects and answers queries about them. Changes take effect in Update, once a frame; queries answer as
@@ -74,6 +86,7 @@ namespace Crofton {
             data.Containment = Flag(options.Containment);
             data.MeshDepth = Flag(options.MeshDepth);
             data.MaxPairs = options.MaxPairs;
+            data.ContactMargin = options.ContactMargin;
             Library.Check(Native.crofton_world_create(ref data, out Handle));
         }
         /// <summary>Frees the world; any later call throws ObjectDisposedException.</summary>
@@ -115,17 +128,21 @@ namespace Crofton {
         public void SetParent(NodeHandle node, NodeHandle? parent) {
             Library.Check(Native.crofton_world_set_parent(Handle, node, ToArray(parent)));
         }
+        /// <summary>Sets the node's layers. Objects below have only those of their layers that are also in these.</summary>
+        public void SetNodeLayers(NodeHandle node, uint layers) { Library.Check(Native.crofton_world_set_node_layers(Handle, node, layers)); }
         /// <summary>Applies all valid items and leaves the others unchanged; the exception names the first invalid one.</summary>
         public void SetNodeTransforms(NodeHandle[] nodes, Transform[] transforms) {
             var count = Library.SameLength(nodes, transforms);
             Library.Check(Native.crofton_world_set_node_transforms(Handle, nodes, UIntPtr.Zero, transforms, UIntPtr.Zero, count));
         }
 
-        /// <summary>Adds an object with a mesh, under a node or in the world; `user` is returned with every answer.</summary>
+        /// <summary>Adds an object with a mesh, under a node or in the world; `user` is returned with every answer. onlyOccludes: no answer contains
+        /// the object, but its occluders hide others.</summary>
         public ObjectHandle Add(MeshHandle mesh, Transform transform, ulong user = 0, NodeHandle? node = null,
-                                uint layers = AllLayers, uint collidesWith = AllLayers) {
+                                uint layers = AllLayers, uint collidesWith = AllLayers, bool onlyOccludes = false) {
             var data = Describe(user, layers, collidesWith);
             data.HasMesh = 1;
+            data.OnlyOccludes = Flag(onlyOccludes);
             data.Mesh = mesh;
             data.HasNode = Flag(node.HasValue);
             data.Node = node.GetValueOrDefault();
@@ -137,7 +154,7 @@ namespace Crofton {
         }
         /// <summary>Removes an object; its handle becomes stale.</summary>
         public void Remove(ObjectHandle handle) { Library.Check(Native.crofton_world_remove(Handle, handle)); }
-        /// <summary>Moves objects with meshes. Applies all valid items; the exception names the first invalid one.</summary>
+        /// <summary>Moves objects with meshes or only shapes. Applies all valid items; the exception names the first invalid one.</summary>
         public void SetTransforms(ObjectHandle[] objects, Transform[] transforms) {
             var count = Library.SameLength(objects, transforms);
             Library.Check(Native.crofton_world_set_transforms(Handle, objects, UIntPtr.Zero, transforms, UIntPtr.Zero, count));
@@ -149,12 +166,9 @@ namespace Crofton {
         }
         /// <summary>Sets the bound of an object that was added with one.</summary>
         public void SetBound(ObjectHandle handle, Bound bound) {
-            IntPtr memory = Marshal.AllocHGlobal(Marshal.SizeOf(typeof(Native.BoundData)));
-            try {
-                Marshal.StructureToPtr(bound.Data, memory, false);
-                Set(handle, Native.SetBound, (ref Native.ObjectData d) => d.Bound = memory);
-            } finally {
-                Marshal.FreeHGlobal(memory);
+            using (var memory = new Copies()) {
+                IntPtr copy = memory.Copied(bound.Data);
+                Set(handle, Native.SetBound, (ref Native.ObjectData d) => d.Bound = copy);
             }
         }
         /// <summary>Sets the mesh of an object that has one.</summary>
@@ -192,13 +206,19 @@ namespace Crofton {
         /// pairs are dropped, everything else is up to date.</summary>
         public void Update() { Change(() => Library.Check(Native.crofton_world_update(Handle, IntPtr.Zero))); }
 
+        /// <summary>Returns the statistics of the last update.</summary>
+        public Statistics Statistics() {
+            Native.WorldStatisticsData data = StatisticsData();
+            return new Statistics {
+                Objects = data.Objects, Resting = data.Resting, Moving = data.Moving, BoxesChanged = data.BoxesChanged, OutOfRange = data.OutOfRange
+            };
+        }
         /// <summary>The number of objects.</summary>
-        public int Count {
-            get {
-                var statistics = new Native.WorldStatisticsData { Size = Native.SizeOf<Native.WorldStatisticsData>() };
-                Library.Check(Native.crofton_world_get_statistics(Handle, ref statistics));
-                return (int)statistics.ObjectCount;
-            }
+        public int Count { get { return (int)StatisticsData().ObjectCount; } }
+        Native.WorldStatisticsData StatisticsData() {
+            var data = new Native.WorldStatisticsData { Size = Native.SizeOf<Native.WorldStatisticsData>() };
+            Library.Check(Native.crofton_world_get_statistics(Handle, ref data));
+            return data;
         }
         /// <summary>Tests whether the world contains the object.</summary>
         public bool Contains(ObjectHandle handle) {
@@ -283,35 +303,26 @@ namespace Crofton {
 
         delegate void Put(ref Native.ObjectData data, IntPtr pointer);
         ObjectHandle Add<T>(Native.ObjectData data, T part, Put put) where T : struct {
-            IntPtr memory = Marshal.AllocHGlobal(Marshal.SizeOf(typeof(T)));
-            try {
-                Marshal.StructureToPtr(part, memory, false);
-                put(ref data, memory);
+            using (var memory = new Copies()) {
+                put(ref data, memory.Copied(part));
                 ObjectHandle handle;
                 Library.Check(Native.crofton_world_add(Handle, ref data, out handle));
                 return handle;
-            } finally {
-                Marshal.FreeHGlobal(memory);
             }
         }
 
-        // The collector must not move the arrays during the call.
-        void WithMesh(float[] positions, uint[] indices, Func<Native.MeshData, int> call) {
-            Library.NotNull(positions, "positions");
-            if (positions.Length % 3 != 0) throw new ArgumentException("positions are x, y, z of each vertex", "positions");
+        static void WithMesh(float[] positions, uint[] indices, Func<Native.MeshData, int> call) {
+            UIntPtr count = Copies.Triples(positions, "positions");
             if (indices != null && indices.Length == 0) throw new ArgumentException("there are none, so there is no triangle", "indices");
-            var p = GCHandle.Alloc(positions, GCHandleType.Pinned);
-            var i = indices == null ? default(GCHandle) : GCHandle.Alloc(indices, GCHandleType.Pinned);
-            try {
+            using (var memory = new Copies()) {
                 Native.MeshData data = Native.crofton_default_mesh_data();
-                data.Positions = p.AddrOfPinnedObject();
-                data.PositionCount = (UIntPtr)(positions.Length / 3);
-                data.Indices = indices == null ? IntPtr.Zero : i.AddrOfPinnedObject();
-                data.IndexCount = (UIntPtr)(indices == null ? 0 : indices.Length);
+                data.Positions = memory.Pinned(positions);
+                data.PositionCount = count;
+                if (indices != null) {
+                    data.Indices = memory.Pinned(indices);
+                    data.IndexCount = (UIntPtr)indices.Length;
+                }
                 Library.Check(call(data));
-            } finally {
-                p.Free();
-                if (indices != null) i.Free();
             }
         }
     }

@@ -30,6 +30,20 @@ static class WorldTests {
             Expect.Equal(2, world.Count);
         }
     }
+    [Test] static void AnObjectInsideAClosedMeshSaysSo() {
+        using (var world = new World()) {
+            MeshHandle mesh = world.AddMesh(Tetrahedron, Faces);
+            world.Add(mesh, Transform.At(0, 0, 0));
+            world.Add(mesh, new Transform { C0 = new Vector3(0.1, 0, 0), C1 = new Vector3(0, 0.1, 0), C2 = new Vector3(0, 0, 0.1), Translation = new Vector3(0.1, 0.1, 0.1) });
+            NodeHandle node = world.AddNode(null, Transform.At(9, 0, 0));
+            world.SetNodeLayers(node, 2);
+            world.Add(mesh, Transform.At(0, 0, 0), 7, node);
+            world.Update();
+            Expect.Equal(Containment.SecondInside, world.Contacts().Single().Inside);
+            var ray = new Ray(new Vector3(9.1, 0.1, 5), Forth);
+            Expect.True(world.RaycastAny(ray, 2) && !world.RaycastAny(ray, 1));
+        }
+    }
     // A wall of two triangles in clusters, one behind it, one beside it; three units wide each, ten units and more away.
     static World Walls(out ObjectHandle[] objects, out MeshHandle mesh) {
         var world = new World();

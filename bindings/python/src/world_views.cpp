@@ -278,6 +278,9 @@ void bind_world_views(py::module_& module, py::class_<PyWorld>& type) {
         "clusters_of",
         [](const PyWorld& world, MeshHandle mesh) {
             return world.ask([&](const World& w) -> std::shared_ptr<depth::ClusteredMesh> {
+                if (!w.contains(mesh))
+                    raise({ErrorCode::stale_handle, mesh.index,
+                           "mesh: the handle is stale: the mesh was removed, or is of another World"});
                 const depth::ClusteredMesh* const cut = w.clusters_of(mesh);
                 return cut ? std::make_shared<depth::ClusteredMesh>(*cut) : nullptr;
             });

@@ -209,7 +209,11 @@ def test_meshes_without_clusters_have_none(town, cube):
     world.update()
     assert world.clusters_of(plain) is None
     world.remove(plain)
-    assert world.clusters_of(plain) is None
+    with pytest.raises(crofton.Error, match="mesh.*stale") as stale:
+        world.clusters_of(plain)
+    assert stale.value.code == "stale_handle"
+    with pytest.raises(crofton.Error, match="mesh.*stale"):
+        crofton.World().clusters_of(town[2]["block"])
     assert sorted(world.clusters_of(town[2]["block"]).triangle_order) == list(range(12))
 
 

@@ -3,7 +3,7 @@
 use crate::error::wrong;
 #[cfg(doc)]
 use crate::World;
-use crate::{sys, Error, Mesh, Node, Obb, Result, Status, Transform};
+use crate::{sys, ClusteredMesh, Error, Mesh, Node, Obb, Result, Shape, Status, Transform};
 use std::{mem::size_of, os::raw::c_void, ptr};
 
 /// A mesh's positions, in your memory.
@@ -46,13 +46,15 @@ pub struct MeshData<'a> {
     pub clusters: bool,
     /// With clusters: back faces are not drawn; they are listed for mirrored objects only.
     pub one_sided: bool,
+    /// With clusters: those of this mesh that were cut before.
+    pub precut: Option<&'a ClusteredMesh>,
 }
 
 impl<'a> MeshData<'a> {
     /// Describes a mesh with the default options.
     pub fn new(positions: &'a [[f32; 3]], indices: &'a [u32]) -> MeshData<'a> {
         let (vertices, indices) = (Vertices::F32(positions), Indices::U32(indices));
-        MeshData { vertices, indices, triangles: true, clusters: false, one_sided: false }
+        MeshData { vertices, indices, triangles: true, clusters: false, one_sided: false, precut: None }
     }
 
     pub(crate) fn raw(&self) -> Result<sys::MeshData> {
@@ -90,7 +92,7 @@ impl<'a> MeshData<'a> {
             triangles: self.triangles as u32,
             clusters: self.clusters as u32,
             one_sided: self.one_sided as u32,
-            precut: ptr::null(),
+            precut: self.precut.map_or(ptr::null(), |p| p.raw as *const _),
         })
     }
 }
@@ -135,9 +137,9 @@ impl Bound {
     }
 }
 
-/// Describes an object to add: a mesh that is placed under a node or in the world, or a bound.
+/// Describes an object to add: a mesh or a shape that is placed under a node or in the world, or a bound.
 #[derive(Debug, Clone, Copy)]
-pub struct Description {
+pub struct Description<'a> {
     pub(crate) mesh: Option<Mesh>,
     pub(crate) bound: Option<Bound>,
     pub(crate) node: Option<Node>,
@@ -146,10 +148,13 @@ pub struct Description {
     pub(crate) layers: u32,
     pub(crate) collides_with: u32,
     pub(crate) occludes: bool,
+    pub(crate) only_occludes: bool,
+    pub(crate) hidden: bool,
+    pub(crate) shape: Option<&'a Shape>,
 }
 
-impl Description {
-    fn new(mesh: Option<Mesh>, bound: Option<Bound>) -> Description {
+impl<'a> Description<'a> {
+    fn new(mesh: Option<Mesh>, bound: Option<Bound>) -> Self {
         Description {
             mesh,
             bound,
@@ -159,38 +164,58 @@ impl Description {
             layers: u32::MAX,
             collides_with: u32::MAX,
             occludes: true,
+            only_occludes: false,
+            hidden: false,
+            shape: None,
         }
     }
     /// Describes an object with a mesh.
-    pub fn mesh(mesh: Mesh) -> Description {
+    pub fn mesh(mesh: Mesh) -> Self {
         Description::new(Some(mesh), None)
     }
     /// Describes an object with only a bound.
-    pub fn bound(bound: Bound) -> Description {
+    pub fn bound(bound: Bound) -> Self {
         Description::new(None, Some(bound))
     }
+    /// Describes an object with only a shape.
+    pub fn shape(shape: &'a Shape) -> Self {
+        Description::new(None, None).collides_as(shape)
+    }
+    /// Gives the object a shape: rays, casts and contacts use it in place of its mesh or bound. Half-spaces, and compounds
+    /// that contain some, are infinite ground. The object's transform scales the shape.
+    pub fn collides_as(self, shape: &'a Shape) -> Self {
+        Description { shape: Some(shape), ..self }
+    }
     /// Places the object under this node.
-    pub fn under(self, node: Node) -> Description {
+    pub fn under(self, node: Node) -> Self {
         Description { node: Some(node), ..self }
     }
-    /// Sets the transform of the mesh, to its node or to the world.
-    pub fn at(self, transform: Transform) -> Description {
+    /// Sets the transform of the mesh or the shape, to its node or to the world.
+    pub fn at(self, transform: Transform) -> Self {
         Description { transform: Some(transform), ..self }
     }
     /// Sets a number that is returned with every answer.
-    pub fn user(self, user: u64) -> Description {
+    pub fn user(self, user: u64) -> Self {
         Description { user, ..self }
     }
     /// Sets the layers that the object is in; the default is all.
-    pub fn layers(self, layers: u32) -> Description {
+    pub fn layers(self, layers: u32) -> Self {
         Description { layers, ..self }
     }
     /// Sets the layers that the object collides with; the default is all.
-    pub fn collides_with(self, layers: u32) -> Description {
+    pub fn collides_with(self, layers: u32) -> Self {
         Description { collides_with: layers, ..self }
     }
+    /// Makes the object's mesh only hide others: no answer contains the object.
+    pub fn only_occludes(self) -> Self {
+        Description { only_occludes: true, ..self }
+    }
+    /// Makes no answer contain the object until [`World::set_hidden`].
+    pub fn hidden(self) -> Self {
+        Description { hidden: true, ..self }
+    }
     /// Makes the object hide no others.
-    pub fn transparent(self) -> Description {
+    pub fn transparent(self) -> Self {
         Description { occludes: false, ..self }
     }
 }

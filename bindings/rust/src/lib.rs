@@ -18,7 +18,7 @@
 //! Positions are `f64` in world coordinates, which are right-handed; angles are in radians. Queries answer as of the
 //! last [`World::update`]. Many threads may query a `&World` at once.
 #![warn(missing_docs)]
-mod collider;
+mod depth;
 mod description;
 mod error;
 mod fit;
@@ -27,13 +27,14 @@ mod jobs;
 mod occlusion;
 mod queries;
 mod regions;
+mod shape;
 #[allow(missing_docs, dead_code)]
 mod sys;
 mod triangulate;
 mod views;
 mod world;
 
-pub use collider::{Collider, TriangleHit};
+pub use depth::{ClusteredMesh, DepthCuller, DepthObject};
 pub use description::{Bound, Description, Indices, MeshData, Vertices};
 pub use error::{Error, Result, Status};
 pub use fit::{fit, fit_boxes, Criterion, Points, Quality};
@@ -42,9 +43,15 @@ pub use geometry::{
     Projection, Ray, Separation, Transform, Verdict,
 };
 pub use jobs::{Executor, Threads};
-pub use occlusion::{FindOptions, OcclusionOptions, OcclusionStatistics};
-pub use queries::{Closest, Contact, Containment, Found, MeshContact, ObjectHit, ObjectPair, Phase, QueryShape};
+pub use occlusion::{DepthBuffer, FindOptions, Occluder, OccluderRef, OcclusionOptions, OcclusionStatistics};
+pub use queries::{
+    Closest, Contact, Containment, Feature, Found, MeshContact, ObjectHit, ObjectPair, Phase, QueryShape,
+};
+pub use queries::{ShapeHit, TrackedPoint};
 pub use regions::{AttachedRegion, Region, RegionObject, RegionOptions};
+pub use shape::{
+    CastOptions, HeightField, Impact, MassProperties, Motion, Part, Penetration, Placed, Shape, ShapeRayHit,
+};
 pub use triangulate::{Method, Triangulation, Triangulator};
 pub use views::{Cluster, Clusters, DrawLimits, PictureView, Seen, SeenByMany, ShadowReceivers};
 pub use views::{ViewMatrix, ViewRequest, ViewResult, VisibleCluster};

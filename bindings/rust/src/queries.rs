@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //! Rays, shapes, pairs and contacts.
 use crate::error::{check, slice};
-use crate::{sys, ContactPoint, Obb, Object, ObjectRef, Ray, Result, World};
+use crate::{sys, CastOptions, ContactPoint, Motion, Obb, Object, ObjectRef, Part, Placed, Ray, Result, World};
 use std::{mem::size_of, ptr};
 
 const NONE: u32 = u32::MAX;
@@ -38,8 +38,8 @@ impl ObjectHit {
 }
 
 /// The shape of a query, in world coordinates.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum QueryShape {
+#[derive(Debug, Clone, Copy)]
+pub enum QueryShape<'a> {
     /// An oriented box.
     Box(Obb),
     /// A sphere.
@@ -58,27 +58,30 @@ pub enum QueryShape {
         /// At least 0.
         radius: f64,
     },
+    /// Any shape but a half-space.
+    Shape(Placed<'a>),
 }
 
-impl QueryShape {
+impl QueryShape<'_> {
     fn raw(&self) -> sys::QueryShape {
         let mut raw: sys::QueryShape = unsafe { std::mem::zeroed() };
-        match *self {
-            QueryShape::Box(b) => {
+        match self {
+            &QueryShape::Box(b) => {
                 raw.kind = sys::QUERY_SHAPE_BOX;
                 raw.bounding_box = b;
             }
-            QueryShape::Sphere { center, radius } => {
+            &QueryShape::Sphere { center, radius } => {
                 raw.kind = sys::QUERY_SHAPE_SPHERE;
                 raw.begin = center;
                 raw.radius = radius;
             }
-            QueryShape::Capsule { begin, end, radius } => {
+            &QueryShape::Capsule { begin, end, radius } => {
                 raw.kind = sys::QUERY_SHAPE_CAPSULE;
                 raw.begin = begin;
                 raw.end = end;
                 raw.radius = radius;
             }
+            QueryShape::Shape(placed) => (raw.kind, raw.shape) = (sys::QUERY_SHAPE_SHAPE, placed.raw()),
         }
         raw
     }
@@ -149,6 +152,70 @@ pub struct MeshContact {
     pub normal: [f64; 3],
 }
 
+/// A vertex, an edge or a face of a shape.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Feature {
+    /// 0: a vertex, 1: an edge, 2: a face.
+    pub kind: u8,
+    unused: u8,
+    /// Its number in the shape.
+    pub index: u16,
+}
+
+/// A contact point of two shapes, for a physics engine. Features and parts are its id, which stays the same while the same
+/// features touch.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TrackedPoint {
+    /// Midway between the surfaces, in the world.
+    pub position: [f64; 3],
+    /// Along the normal; negative: a gap.
+    pub depth: f64,
+    /// On the first shape.
+    pub on_a: Feature,
+    /// On the second.
+    pub on_b: Feature,
+    /// Of the first shape.
+    pub part_a: Part,
+    /// Of the second.
+    pub part_b: Part,
+    /// Unit, from first to second.
+    pub normal: [f64; 3],
+    began: u8,
+    unused: [u8; 3],
+    /// Yours: 0 when the point begins, kept while it stays. [`World::visit_shape_points`] lets you write it.
+    pub memory: [f32; 4],
+}
+
+impl TrackedPoint {
+    /// True if no point of the last update has its id.
+    pub fn began(&self) -> bool {
+        self.began != 0
+    }
+}
+
+/// The first object that a moving shape meets.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ShapeHit {
+    /// The object.
+    pub object: Object,
+    /// The object's user number.
+    pub user: u64,
+    /// When they are within the tolerance and about to touch.
+    pub time: f64,
+    /// Unit, from the shape to the object.
+    pub normal: [f64; 3],
+    /// On the object's surface.
+    pub point: [f64; 3],
+    /// The triangle of the object's mesh or its shape's surface; else 0.
+    pub triangle: u32,
+    /// The gap at that time; negative: how deep they overlap, from the start.
+    pub distance: f64,
+    /// True if [`CastOptions::max_steps`] was too small: the shape meets nothing before `time`.
+    pub unresolved: bool,
+}
+
 /// Two objects that touch, or that have ended touching in this update.
 #[derive(Debug, Clone, Copy)]
 pub struct Contact<'a> {
@@ -169,6 +236,8 @@ pub struct Contact<'a> {
     pub points: &'a [ContactPoint],
     /// The contacts of triangles, for two meshes, or for a mesh and a box.
     pub triangles: &'a [MeshContact],
+    /// For two shapes.
+    pub shape_points: &'a [TrackedPoint],
 }
 
 /// A list of objects or hits that keeps its memory; reuse it from frame to frame.
@@ -256,9 +325,45 @@ impl World {
 
     /// Returns the contacts, and those that have ended, in the order of the pairs.
     pub fn contacts(&self) -> Result<Vec<Contact<'_>>> {
+        Ok(self.raw_contacts()?.iter().map(|c| contact(c)).collect())
+    }
+    fn raw_contacts(&self) -> Result<&[sys::ObjectContact]> {
         let (mut contacts, mut count) = (ptr::null(), 0);
         check(unsafe { sys::crofton_world_contacts(self.raw, &mut contacts, &mut count) })?;
-        Ok(unsafe { slice(contacts, count) }.iter().map(|c| contact(c)).collect())
+        Ok(unsafe { slice(contacts, count) })
+    }
+    /// Visits the contact points of all pairs of shapes, with their memory to write, such as impulses for a warm start.
+    pub fn visit_shape_points(
+        &mut self, mut visit: impl FnMut(ObjectRef, ObjectRef, &TrackedPoint, &mut [f32; 4]),
+    ) -> Result<()> {
+        for c in self.raw_contacts()? {
+            for i in 0..c.shape_point_count {
+                // The world is borrowed mutably, so nothing else reads the point.
+                let (point, memory) = unsafe { (*c.shape_points.add(i), &mut (*c.shape_points.add(i)).memory) };
+                visit(c.first, c.second, &point, memory);
+            }
+        }
+        Ok(())
+    }
+
+    /// Finds the first object that a moving shape meets; the objects are at rest. A shape inside a closed mesh meets it from
+    /// inside.
+    pub fn cast(
+        &self, shape: &Placed, motion: &Motion, options: &CastOptions, layers: u32,
+    ) -> Result<Option<ShapeHit>> {
+        let mut h: sys::ShapeHit = unsafe { std::mem::zeroed() };
+        h.size = size_of::<sys::ShapeHit>();
+        check(unsafe { sys::crofton_world_cast(self.raw, &shape.raw(), motion, &options.raw(), layers, &mut h) })?;
+        Ok((h.object.index != NONE).then_some(ShapeHit {
+            object: h.object,
+            user: h.user,
+            time: h.time,
+            normal: h.normal,
+            point: h.point,
+            triangle: h.triangle,
+            distance: h.distance,
+            unresolved: h.result == sys::CAST_UNRESOLVED,
+        }))
     }
 }
 
@@ -278,6 +383,7 @@ fn contact<'a>(c: &sys::ObjectContact) -> Contact<'a> {
         depth: c.depth,
         points: unsafe { slice(c.points, c.point_count) },
         triangles: unsafe { slice(c.triangles, c.triangle_count) },
+        shape_points: unsafe { slice(c.shape_points, c.shape_point_count) },
     }
 }
 

@@ -2,17 +2,18 @@
 //! Parts of a large world that come and go.
 use crate::error::check;
 use crate::jobs::with_jobs;
-use crate::{sys, Bound, Executor, MeshData, Object, Result, Transform, World};
+use crate::{sys, Bound, Executor, MeshData, Object, Result, Shape, Transform, World};
 use std::ptr;
 
-/// An object of a [`Region`]. Get it from [`RegionObject::bound`] or [`RegionObject::mesh`] and change its members.
+/// An object of a [`Region`]. Get it from [`RegionObject::bound`], [`RegionObject::mesh`] or [`RegionObject::shape`] and
+/// change its members.
 #[derive(Debug, Clone, Copy)]
-pub struct RegionObject {
+pub struct RegionObject<'a> {
     /// A bound, relative to the region's origin; none for an object with a mesh.
     pub bound: Option<Bound>,
     /// The place of its mesh in [`RegionOptions::meshes`].
     pub mesh: Option<u32>,
-    /// Places the mesh, relative to the region's origin.
+    /// Places the mesh or the shape, relative to the region's origin.
     pub transform: Transform,
     /// A number that is returned with every answer.
     pub user: u64,
@@ -22,20 +23,37 @@ pub struct RegionObject {
     pub collides_with: u32,
     /// False: the object's mesh does not hide others.
     pub occludes: bool,
+    /// False: answers contain the object. True, with a mesh: it only hides others.
+    pub only_occludes: bool,
+    /// Rays, casts and contacts use it in place of the mesh or the bound. Not infinite ground.
+    pub shape: Option<&'a Shape>,
 }
 
-impl RegionObject {
-    fn new(bound: Option<Bound>, mesh: Option<u32>, transform: Transform) -> RegionObject {
-        let all = u32::MAX;
-        RegionObject { bound, mesh, transform, user: 0, layers: all, collides_with: all, occludes: true }
+impl<'a> RegionObject<'a> {
+    fn new(bound: Option<Bound>, mesh: Option<u32>, transform: Transform) -> Self {
+        RegionObject {
+            bound,
+            mesh,
+            transform,
+            user: 0,
+            layers: u32::MAX,
+            collides_with: u32::MAX,
+            occludes: true,
+            only_occludes: false,
+            shape: None,
+        }
     }
     /// Describes an object with only a bound.
-    pub fn bound(bound: Bound) -> RegionObject {
+    pub fn bound(bound: Bound) -> Self {
         RegionObject::new(Some(bound), None, Transform::default())
     }
     /// Describes an object with the mesh at that place in [`RegionOptions::meshes`].
-    pub fn mesh(place: u32, transform: Transform) -> RegionObject {
+    pub fn mesh(place: u32, transform: Transform) -> Self {
         RegionObject::new(None, Some(place), transform)
+    }
+    /// Describes an object with only a shape.
+    pub fn shape(shape: &'a Shape, transform: Transform) -> Self {
+        RegionObject { shape: Some(shape), ..RegionObject::new(None, None, transform) }
     }
     fn raw(&self) -> sys::RegionObject {
         let mut raw = unsafe { sys::crofton_default_region_object() };
@@ -44,8 +62,12 @@ impl RegionObject {
         }
         if let Some(mesh) = self.mesh {
             raw.mesh = mesh;
+        }
+        if self.bound.is_none() {
             raw.transform = &self.transform;
         }
+        raw.shape = self.shape.map_or(ptr::null(), |s| s.raw as *const _);
+        raw.only_occludes = self.only_occludes as u32;
         (raw.user, raw.layers, raw.collides_with) = (self.user, self.layers, self.collides_with);
         raw.occludes = self.occludes as u32;
         raw

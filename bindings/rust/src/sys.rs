@@ -16,7 +16,7 @@ macro_rules! opaque {
         }
     )*};
 }
-opaque!(World, ViewResult, Found, Region, Shape, Triangulator);
+opaque!(World, ViewResult, Found, Region, Shape, Triangulator, ClusteredMesh, DepthCuller);
 
 #[repr(C)]
 pub struct Jobs {
@@ -73,7 +73,7 @@ pub struct MeshData {
     pub triangles: u32,
     pub clusters: u32,
     pub one_sided: u32,
-    pub precut: *const c_void,
+    pub precut: *const ClusteredMesh,
 }
 
 /// The triangles of a shape.
@@ -147,6 +147,7 @@ pub const SET_HIDDEN: u32 = 8;
 pub const SET_OCCLUDES: u32 = 16;
 pub const SET_MESH: u32 = 32;
 pub const SET_BOUND: u32 = 64;
+pub const SET_SHAPE: u32 = 128;
 
 #[repr(C)]
 pub struct ObjectInfo {
@@ -188,14 +189,123 @@ pub struct ShapeDescription {
     pub max_vertices: u32,
     pub face_tolerance: f32,
     pub mesh: *const Mesh,
-    pub height_field: *const c_void,
+    pub height_field: *const HeightField,
     pub front_only: u32,
     pub core: *const Shape,
     pub children: *const *const Shape,
     pub poses: *const crate::Transform,
     pub child_count: usize,
 }
+pub const SHAPE_SPHERE: u32 = 0;
+pub const SHAPE_CAPSULE: u32 = 1;
+pub const SHAPE_CYLINDER: u32 = 2;
+pub const SHAPE_CONE: u32 = 3;
+pub const SHAPE_BOX: u32 = 4;
+pub const SHAPE_TRIANGLE: u32 = 5;
+pub const SHAPE_HULL: u32 = 6;
+pub const SHAPE_HALF_SPACE: u32 = 7;
 pub const SHAPE_MESH: u32 = 8;
+pub const SHAPE_HEIGHT_FIELD: u32 = 9;
+pub const SHAPE_COMPOUND: u32 = 10;
+pub const SHAPE_ROUNDED: u32 = 11;
+
+#[repr(C)]
+pub struct HeightField {
+    pub size: usize,
+    pub columns: u32,
+    pub rows: u32,
+    pub heights: *const f32,
+    pub materials: *const u8,
+    pub spacing: [f64; 2],
+}
+
+#[repr(C)]
+pub struct ShapeInfo {
+    pub size: usize,
+    pub kind: u32,
+    pub vertex_count: u32,
+    pub face_count: u32,
+    pub part_count: u32,
+    pub min: [f64; 3],
+    pub max: [f64; 3],
+    pub max_overshoot: f64,
+    pub vertices: *const f32,
+    pub indices: *const u16,
+    pub index_count: usize,
+}
+
+#[repr(C)]
+pub struct MassProperties {
+    pub size: usize,
+    pub volume: f64,
+    pub center: [f64; 3],
+    pub inertia: [f64; 9],
+}
+
+#[repr(C)]
+pub struct ShapeDistance {
+    pub size: usize,
+    pub distance: f64,
+    pub lower: f64,
+    pub upper: f64,
+    pub on_a: [f64; 3],
+    pub on_b: [f64; 3],
+    pub normal: [f64; 3],
+    pub part_a: crate::Part,
+    pub part_b: crate::Part,
+}
+
+#[repr(C)]
+pub struct ShapePenetration {
+    pub size: usize,
+    pub depth: f64,
+    pub lower: f64,
+    pub upper: f64,
+    pub on_a: [f64; 3],
+    pub on_b: [f64; 3],
+    pub normal: [f64; 3],
+    pub part_a: crate::Part,
+    pub part_b: crate::Part,
+    pub overlapping: u32,
+}
+
+#[repr(C)]
+pub struct CastOptions {
+    pub size: usize,
+    pub duration: f64,
+    pub tolerance: f64,
+    pub max_steps: u32,
+    pub ignore_initial_overlaps: u32,
+}
+pub const CAST_MISS: u32 = 0;
+pub const CAST_UNRESOLVED: u32 = 2;
+
+#[repr(C)]
+pub struct Impact {
+    pub size: usize,
+    pub time: f64,
+    pub distance: f64,
+    pub on_a: [f64; 3],
+    pub on_b: [f64; 3],
+    pub normal: [f64; 3],
+    pub part_a: crate::Part,
+    pub part_b: crate::Part,
+    pub result: u32,
+    pub steps: u32,
+}
+
+#[repr(C)]
+pub struct ShapeHit {
+    pub size: usize,
+    pub object: crate::Object,
+    pub user: u64,
+    pub time: f64,
+    pub normal: [f64; 3],
+    pub point: [f64; 3],
+    pub triangle: u32,
+    pub result: u32,
+    pub distance: f64,
+}
 
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -207,6 +317,7 @@ pub struct Placed {
 pub const QUERY_SHAPE_BOX: u32 = 0;
 pub const QUERY_SHAPE_SPHERE: u32 = 1;
 pub const QUERY_SHAPE_CAPSULE: u32 = 2;
+pub const QUERY_SHAPE_SHAPE: u32 = 3;
 
 #[repr(C)]
 pub struct QueryShape {
@@ -219,27 +330,12 @@ pub struct QueryShape {
 }
 
 #[repr(C)]
-pub struct MeshRelation {
-    pub size: usize,
-    pub meet: u32,
-    pub containment: u32,
-    pub distance: f64,
-    pub on_a: [f64; 3],
-    pub on_b: [f64; 3],
-    pub depth: f64,
-    pub direction: [f64; 3],
-}
-pub const MESHES_MEET: u32 = 1;
-pub const MESHES_DISTANCE: u32 = 4;
-
-#[repr(C)]
 pub struct ShapeRayHit {
     pub size: usize,
     pub t: f64,
     pub point: [f64; 3],
     pub normal: [f64; 3],
-    pub child: u32,
-    pub triangle: u32,
+    pub part: crate::Part,
     pub started_inside: u32,
 }
 
@@ -294,7 +390,7 @@ pub struct ObjectContact {
     pub point_count: usize,
     pub triangles: *const crate::MeshContact,
     pub triangle_count: usize,
-    pub shape_points: *mut c_void,
+    pub shape_points: *mut crate::TrackedPoint,
     pub shape_point_count: usize,
 }
 
@@ -310,6 +406,42 @@ pub struct FindOptions {
     pub flatness: f64,
     pub max_patch_triangles: u32,
     pub level_triangles: u32,
+}
+
+pub const OCCLUDER_BOX: u32 = 0;
+pub const OCCLUDER_WALLED: u32 = 1;
+pub const OCCLUDER_CONVEX: u32 = 2;
+pub const OCCLUDER_PATCH: u32 = 3;
+
+#[repr(C)]
+pub struct Occluder {
+    pub size: usize,
+    pub kind: u32,
+    pub is_one_sided: u32,
+    pub positions: *const f32,
+    pub position_count: usize,
+    pub indices: *const u32,
+    pub index_count: usize,
+    pub bounding_box: crate::Obb,
+    pub edges: u32,
+    pub has_piece: u32,
+    pub has_eyes: u32,
+    pub piece_min: [f64; 3],
+    pub piece_max: [f64; 3],
+    pub eyes_min: [f64; 3],
+    pub eyes_max: [f64; 3],
+    pub mean_shadow: f64,
+    pub gain: f64,
+}
+
+#[repr(C)]
+pub struct DepthObject {
+    pub size: usize,
+    pub mesh: *const ClusteredMesh,
+    pub to_clip: [f32; 16],
+    pub one_sided: u32,
+    pub hides: u32,
+    pub position_error: f32,
 }
 
 #[repr(C)]
@@ -487,9 +619,34 @@ extern "C" {
     pub fn crofton_shape_create(description: *const ShapeDescription, shape: *mut *mut Shape) -> Status;
     pub fn crofton_shape_destroy(shape: *mut Shape) -> Status;
     pub fn crofton_shape_raycast(shape: *const Placed, ray: *const crate::Ray, hit: *mut ShapeRayHit) -> Status;
-    pub fn crofton_meshes_relate(
-        a: *const Shape, b: *const Shape, b_to_a: *const crate::Transform, which: u32, relation: *mut MeshRelation,
+    pub fn crofton_shape_get_info(shape: *const Shape, info: *mut ShapeInfo) -> Status;
+    pub fn crofton_shape_get_mass(shape: *const Shape, mass: *mut MassProperties) -> Status;
+    pub fn crofton_shapes_meet(a: *const Placed, b: *const Placed, cache: *mut c_void, meet: *mut c_int) -> Status;
+    pub fn crofton_shapes_distance(
+        a: *const Placed, b: *const Placed, cache: *mut c_void, distance: *mut ShapeDistance,
     ) -> Status;
+    pub fn crofton_shapes_penetration(
+        a: *const Placed, b: *const Placed, cache: *mut c_void, penetration: *mut ShapePenetration,
+    ) -> Status;
+    pub fn crofton_default_cast_options() -> CastOptions;
+    pub fn crofton_shapes_cast(
+        a: *const Placed, motion_a: *const crate::Motion, b: *const Placed, motion_b: *const crate::Motion,
+        options: *const CastOptions, impact: *mut Impact,
+    ) -> Status;
+
+    pub fn crofton_default_depth_object() -> DepthObject;
+    pub fn crofton_clustered_mesh_create(
+        mesh: *const Mesh, max_triangles: u32, clustered: *mut *mut ClusteredMesh,
+    ) -> Status;
+    pub fn crofton_clustered_mesh_destroy(clustered: *mut ClusteredMesh) -> Status;
+    pub fn crofton_clustered_mesh_get(clustered: *const ClusteredMesh, clusters: *mut Clusters) -> Status;
+    pub fn crofton_depth_culler_create(culler: *mut *mut DepthCuller) -> Status;
+    pub fn crofton_depth_culler_destroy(culler: *mut DepthCuller) -> Status;
+    pub fn crofton_depth_culler_find_visible(
+        culler: *mut DepthCuller, objects: *const DepthObject, object_count: usize, picture: *const PictureView,
+        jobs: *const Jobs, clusters: *mut *const crate::VisibleCluster, count: *mut usize, statistics: *mut c_void,
+    ) -> Status;
+    pub fn crofton_depth_culler_nearness(culler: *const DepthCuller, x: u32, y: u32, nearness: *mut f32) -> Status;
 
     pub fn crofton_criterion_for_frustum(camera: *const Camera, criterion: *mut crate::Criterion) -> Status;
     pub fn crofton_criterion_for_rays(length: f64, criterion: *mut crate::Criterion) -> Status;
@@ -602,5 +759,23 @@ extern "C" {
         world: *const World, contacts: *mut *const ObjectContact, count: *mut usize,
     ) -> Status;
 
+    pub fn crofton_world_cast(
+        world: *const World, probe: *const Placed, motion: *const crate::Motion, options: *const CastOptions,
+        layer_mask: u32, hit: *mut ShapeHit,
+    ) -> Status;
+
+    pub fn crofton_world_set_occluders(
+        world: *mut World, mesh: crate::Mesh, occluders: *const Occluder, count: usize,
+    ) -> Status;
+    pub fn crofton_world_get_occluder(
+        world: *const World, mesh: crate::Mesh, place: usize, occluder: *mut Occluder,
+    ) -> Status;
+    pub fn crofton_view_result_occluders(
+        result: *const ViewResult, world: *const World, hidden: *const crate::Object,
+        occluders: *mut crate::OccluderRef, capacity: usize, count: *mut usize,
+    ) -> Status;
+    pub fn crofton_view_result_depth(
+        result: *const ViewResult, view: usize, nearness: *mut f32, capacity: usize,
+    ) -> Status;
     pub fn crofton_world_find_occluders(world: *mut World, mesh: crate::Mesh, options: *const FindOptions) -> Status;
 }

@@ -177,6 +177,17 @@ pub struct Clusters<'a> {
     pub triangle_order: &'a [u32],
 }
 
+impl Clusters<'_> {
+    /// # Safety
+    /// The arrays live as long as the result.
+    pub(crate) unsafe fn of(raw: &sys::Clusters) -> Self {
+        Clusters {
+            clusters: slice(raw.clusters, raw.cluster_count),
+            triangle_order: slice(raw.triangle_order, raw.triangle_count),
+        }
+    }
+}
+
 impl Default for ViewRequest<'_> {
     /// Returns a request for all layers without occlusion; set camera, matrix or volume.
     fn default() -> Self {
@@ -231,14 +242,7 @@ impl<'a> Asked<'a> {
                 origin: m.origin,
             }),
             occlusion: request.occlusion.as_ref().map(raw_occlusion),
-            picture: request.picture.map(|p| sys::PictureView {
-                size: size_of::<sys::PictureView>(),
-                width: p.width,
-                height: p.height,
-                depth: p.depth as u32,
-                samples: p.samples,
-                work_limit: p.work_limit,
-            }),
+            picture: request.picture.as_ref().map(raw_picture),
             receivers: request.receivers.map(|r| sys::ShadowReceivers {
                 size: size_of::<sys::ShadowReceivers>(),
                 seen: r.seen.result.raw,
@@ -340,7 +344,7 @@ impl<'a> Seen<'a> {
 /// The answer of several views, each object once.
 pub struct SeenByMany<'a> {
     world: &'a World,
-    result: &'a ViewResult,
+    pub(crate) result: &'a ViewResult,
 }
 
 impl<'a> SeenByMany<'a> {
@@ -406,16 +410,22 @@ impl World {
     /// Returns the clusters of a mesh with [`MeshData::clusters`](crate::MeshData::clusters), as of the last update.
     pub fn clusters_of(&self, mesh: Mesh) -> Result<Option<Clusters<'_>>> {
         let raw = self.mesh_info(mesh)?.clusters;
-        Ok((raw.cluster_count > 0).then(|| unsafe {
-            Clusters {
-                clusters: slice(raw.clusters, raw.cluster_count),
-                triangle_order: slice(raw.triangle_order, raw.triangle_count),
-            }
-        }))
+        Ok((raw.cluster_count > 0).then(|| unsafe { Clusters::of(&raw) }))
     }
 }
 
-fn view_info(result: &ViewResult, view: usize) -> Result<sys::ViewInfo> {
+pub(crate) fn raw_picture(p: &PictureView) -> sys::PictureView {
+    sys::PictureView {
+        size: size_of::<sys::PictureView>(),
+        width: p.width,
+        height: p.height,
+        depth: p.depth as u32,
+        samples: p.samples,
+        work_limit: p.work_limit,
+    }
+}
+
+pub(crate) fn view_info(result: &ViewResult, view: usize) -> Result<sys::ViewInfo> {
     let mut info: sys::ViewInfo = unsafe { std::mem::zeroed() };
     info.size = size_of::<sys::ViewInfo>();
     check(unsafe { sys::crofton_view_result_get_view(result.raw, view, &mut info) })?;

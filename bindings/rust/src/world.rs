@@ -2,7 +2,9 @@
 //! World holds a game's objects and answers queries about them.
 use crate::error::{check, wrong};
 use crate::jobs::with_jobs;
-use crate::{sys, Bound, Description, Error, Executor, Indices, MeshData, Obb, Result, Status, Transform, Vertices};
+use crate::{
+    sys, Bound, Description, Error, Executor, Indices, MeshData, Obb, Result, Shape, Status, Transform, Vertices,
+};
 use std::{mem::size_of, ptr};
 
 macro_rules! handle {
@@ -37,7 +39,7 @@ pub struct ObjectRef {
 }
 
 /// Options of a [`World`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WorldOptions {
     /// True: updates find pairs and contacts; false: neither.
     pub pairs: bool,
@@ -49,6 +51,8 @@ pub struct WorldOptions {
     pub mesh_depth: bool,
     /// 2^24; an update with more pairs fails.
     pub max_pairs: u64,
+    /// 0; gaps up to this between shapes are contacts.
+    pub contact_margin: f64,
 }
 
 impl Default for WorldOptions {
@@ -60,6 +64,7 @@ impl Default for WorldOptions {
             containment: raw.containment != 0,
             mesh_depth: raw.mesh_depth != 0,
             max_pairs: raw.max_pairs,
+            contact_margin: raw.contact_margin,
         }
     }
 }
@@ -113,6 +118,7 @@ impl World {
         given.containment = options.containment as u32;
         given.mesh_depth = options.mesh_depth as u32;
         given.max_pairs = options.max_pairs;
+        given.contact_margin = options.contact_margin;
         let mut raw = ptr::null_mut();
         check(unsafe { sys::crofton_world_create(&given, &mut raw) })?;
         Ok(World { raw })
@@ -130,7 +136,7 @@ impl World {
     }
     /// Moves the vertices of a mesh that deforms: as many as before.
     pub fn set_vertices(&mut self, mesh: Mesh, vertices: Vertices) -> Result<()> {
-        let data = MeshData { vertices, indices: Indices::None, triangles: true, clusters: false, one_sided: false };
+        let data = MeshData { vertices, indices: Indices::None, ..MeshData::new(&[], &[]) };
         check(unsafe { sys::crofton_world_set_vertices(self.raw, mesh, &data.raw()?) })
     }
     /// Removes a mesh. Error: objects use it.
@@ -181,9 +187,9 @@ impl World {
             layers: description.layers,
             collides_with: description.collides_with,
             occludes: description.occludes as u32,
-            only_occludes: 0,
-            shape: ptr::null(),
-            hidden: 0,
+            only_occludes: description.only_occludes as u32,
+            shape: description.shape.map_or(ptr::null(), |s| s.raw as *const _),
+            hidden: description.hidden as u32,
         };
         let mut object = Object { index: 0, generation: 0 };
         check(unsafe { sys::crofton_world_add(self.raw, &raw, &mut object) })?;
@@ -193,7 +199,7 @@ impl World {
     pub fn remove(&mut self, object: Object) -> Result<()> {
         check(unsafe { sys::crofton_world_remove(self.raw, object) })
     }
-    /// Moves objects with meshes. Applies all valid items; the error names the first invalid one.
+    /// Moves objects with meshes or only shapes. Applies all valid items; the error names the first invalid one.
     pub fn set_transforms(&mut self, objects: &[Object], transforms: &[Transform]) -> Result<()> {
         same_length(objects.len(), transforms.len())?;
         let (o, t) = (objects.as_ptr(), transforms.as_ptr());
@@ -221,6 +227,10 @@ impl World {
     /// Sets the mesh of an object that has one.
     pub fn set_mesh(&mut self, object: Object, mesh: Mesh) -> Result<()> {
         self.set(object, sys::SET_MESH, |d| (d.has_mesh, d.mesh) = (1, mesh))
+    }
+    /// Sets the shape of an object, or removes it; not of one that was added with only a shape.
+    pub fn set_shape(&mut self, object: Object, shape: Option<&Shape>) -> Result<()> {
+        self.set(object, sys::SET_SHAPE, |d| d.shape = shape.map_or(ptr::null(), |s| s.raw as *const _))
     }
     /// Hides or shows an object; no answer contains a hidden one.
     pub fn set_hidden(&mut self, object: Object, hidden: bool) -> Result<()> {

@@ -4,7 +4,7 @@ mod common;
 use common::{FACES, TETRAHEDRON};
 use crofton::*;
 
-fn ball(x: f64, user: u64) -> RegionObject {
+fn ball(x: f64, user: u64) -> RegionObject<'static> {
     RegionObject { user, ..RegionObject::bound(Bound::Sphere { center: [x, 0.0, 0.0], radius: 1.0 }) }
 }
 

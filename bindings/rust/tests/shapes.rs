@@ -131,22 +131,22 @@ fn a_polygon_that_crosses_itself_is_an_error() {
 
 #[test]
 fn meshes_touch_or_are_apart() {
-    let mesh = Collider::new(&TETRAHEDRON, &FACES).unwrap();
-    assert!(mesh.touches(&mesh, &Transform::at([1.0, 0.0, 0.0])).unwrap());
-    assert!(!mesh.touches(&mesh, &Transform::at([1.5, 0.0, 0.0])).unwrap());
-    let s = mesh.distance(&mesh, &Transform::at([1.5, 0.0, 0.0])).unwrap();
-    assert!((s.distance - 0.5).abs() < 1e-12);
+    let mesh = Shape::mesh(&TETRAHEDRON, &FACES, false).unwrap();
+    let (here, at) = (mesh.at(Transform::default()), |x| mesh.at(Transform::at([x, 0.0, 0.0])));
+    assert!(here.touches(&at(1.0)).unwrap());
+    assert!(!here.touches(&at(1.5)).unwrap());
+    assert!((here.distance(&at(1.5)).unwrap().distance - 0.5).abs() < 1e-12);
     let skew = Transform { linear: [2.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0], translation: [0.0; 3] };
-    assert!(mesh.touches(&mesh, &skew).is_err());
+    assert!(here.touches(&mesh.at(skew)).is_err());
 }
 
 #[test]
 fn rays_meet_a_mesh() {
-    let mesh = Collider::new(&TETRAHEDRON, &FACES).unwrap();
-    let rays = [Ray::new([0.2, 0.2, -1.0], [0.0, 0.0, 1.0]), Ray::new([2.0, 2.0, -1.0], [0.0, 0.0, 1.0])];
-    let hits = mesh.raycasts(&rays).unwrap();
-    assert_eq!(hits[0], Some(TriangleHit { t: 1.0, triangle: 0 }));
-    assert_eq!(hits[1], None);
+    let mesh = Shape::mesh(&TETRAHEDRON, &FACES, false).unwrap();
+    let from = |x| mesh.at(Transform::default()).raycast(&Ray::new([x, 0.2, -1.0], [0.0, 0.0, 1.0])).unwrap();
+    let hit = from(0.2).unwrap();
+    assert_eq!((hit.t, hit.normal, hit.part.triangle, hit.started_inside), (1.0, [0.0, 0.0, -1.0], 0, false));
+    assert_eq!(from(2.0), None);
 }
 
 /// Of the functions that the library exports, those that the crate leaves out: World does what they are for.

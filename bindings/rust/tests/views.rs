@@ -241,3 +241,98 @@ fn each_of_many_views_is_obeyed_as_it_is_alone() {
     }
     assert_eq!(seen.triangles(cases.len()).unwrap_err().status, Status::OutOfRange);
 }
+
+#[test]
+fn given_occluders_hide_and_say_what_they_hide() {
+    let (mut world, wall) = walled();
+    let corners: Vec<[f32; 3]> = (0..8).map(|i| [0, 1, 2].map(|k| if i >> k & 1 == 1 { 1.0 } else { -1.0 })).collect();
+    let faces = [4, 5, 6, 5, 7, 6];
+    let mesh = world.add_mesh(&MeshData::new(&corners, &faces)).unwrap();
+    world.set_mesh(wall, mesh).unwrap();
+    let occlusion = Some(OcclusionOptions { list_occluded: true, ..Default::default() });
+    let request = ViewRequest { occlusion, ..Camera::default().into() };
+    let mut visible = ViewResult::new().unwrap();
+    let cube = Obb::aligned([0.0; 3], [1.0; 3]);
+    let patch = |one_sided| Occluder::Patch { positions: &corners, indices: &faces, one_sided };
+    for given in [Occluder::Box(cube), Occluder::Walled(cube), Occluder::Convex(&corners), patch(false), patch(true)] {
+        world.set_occluders(mesh, &[]).unwrap();
+        world.update().unwrap();
+        assert!(world.view(&request, &mut visible).unwrap().occluded_ids().is_empty());
+        world.set_occluders(mesh, &[given]).unwrap();
+        world.update().unwrap();
+        let kept = world.occluder(mesh, 0).unwrap();
+        assert_eq!(std::mem::discriminant(&kept), std::mem::discriminant(&given));
+        let seen = world.view(&request, &mut visible).unwrap();
+        assert_eq!(seen.occluded_ids().len(), 1, "{given:?}");
+        let hidden =
+            (0..9).map(|i| Object { index: seen.occluded_ids()[0], generation: i }).find(|&o| world.contains(o));
+        for asked in [hidden, None] {
+            let hiders = seen.occluders(asked).unwrap();
+            assert_eq!((hiders.len(), hiders[0].object, hiders[0].user, hiders[0].place), (1, wall, 1, 0));
+        }
+        assert!(seen.occluders(Some(wall)).unwrap().is_empty());
+        // The wall's front is 4 before the camera, in the middle of the picture; nothing is at its corner.
+        let depth = seen.depth().unwrap();
+        assert_eq!((depth.width, depth.height, depth.nearness.len()), (480, 270, 480 * 270));
+        assert!((depth.nearness[135 * 480 + 240] - 0.25).abs() < 0.01 && depth.nearness[0] < -1e38);
+    }
+    assert_eq!(world.occluder(mesh, 1).unwrap_err().status, Status::OutOfRange);
+    let bad = [Occluder::Box(cube), Occluder::Convex(&[[f32::NAN; 3]; 4])];
+    let error = world.set_occluders(mesh, &bad).unwrap_err();
+    assert_eq!((error.status, error.item), (Status::NonFinite, Some(1)));
+    assert_eq!(world.occluder_count(mesh).unwrap(), 1); // nothing has changed
+    let many = world.view_many(None, &[request.clone(), Camera::default().into()], &mut visible).unwrap();
+    assert_eq!(many.depth(0).unwrap().nearness.len(), 480 * 270);
+    assert_eq!(many.depth(1).unwrap_err().status, Status::Empty);
+}
+
+#[test]
+fn an_object_may_only_hide_or_be_hidden_from_the_start() {
+    let (mut world, mesh, objects) = walls();
+    world.set_hidden(objects[0], true).unwrap();
+    let corners = [[-3.0, -3.0, 0.0], [3.0, -3.0, 0.0], [3.0, 3.0, 0.0], [-3.0, 3.0, 0.0]];
+    let wall = Occluder::Patch { positions: &corners, indices: &[0, 1, 2, 0, 2, 3], one_sided: false };
+    world.set_occluders(mesh, &[wall]).unwrap();
+    world.add(&Description::mesh(mesh).at(Transform::at([0.0, 0.0, -10.0])).only_occludes()).unwrap();
+    world.add(&Description::mesh(mesh).at(Transform::at([0.0, 0.0, -11.0])).hidden()).unwrap();
+    world.update().unwrap();
+    let request = ViewRequest { occlusion: Some(OcclusionOptions::default()), ..Camera::default().into() };
+    let mut visible = ViewResult::new().unwrap();
+    assert_eq!(world.view(&request, &mut visible).unwrap().ids(), [objects[2].index]);
+}
+
+#[test]
+fn a_culler_of_its_own_lists_the_same_triangles_and_takes_clusters_that_were_cut_before() {
+    let corners = [[-3.0, -3.0, 0.0], [3.0, -3.0, 0.0], [3.0, 3.0, 0.0], [-3.0, 3.0, 0.0]];
+    let mesh = ClusteredMesh::new(&corners, &[0, 1, 2, 0, 2, 3], 0).unwrap();
+    assert_eq!((mesh.clusters().unwrap().clusters.len(), mesh.clusters().unwrap().triangle_order.len()), (1, 2));
+    // Reversed depth to infinity: w = -z, near plane 1. Of three walls the second is hidden.
+    let place = |x: f32, z: f32| [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0, x, 0.0, 1.0, -z];
+    let object = |x, z| DepthObject { mesh: &mesh, to_clip: place(x, z), one_sided: false, hides: true };
+    let picture =
+        PictureView { width: 160, height: 90, depth: DepthRange::ReversedZeroToOne, samples: 1, work_limit: 0 };
+    let mut culler = DepthCuller::new().unwrap();
+    assert_eq!(culler.nearness(0, 0).unwrap_err().status, Status::OutOfRange);
+    let objects = [object(0.0, -10.0), object(0.0, -40.0), object(20.0, -40.0)];
+    for executor in [None, Some(&Threads(2) as &dyn Executor)] {
+        let listed = culler.find_visible(executor, &objects, &picture).unwrap();
+        assert_eq!(listed.iter().map(|c| (c.object, c.triangles)).collect::<Vec<_>>(), [(0, 3), (2, 3)]);
+    }
+    assert!((culler.nearness(80, 45).unwrap() - 0.1).abs() < 1e-6);
+    assert_eq!(culler.nearness(0, 0).unwrap(), f32::NEG_INFINITY);
+    let glass = DepthObject { hides: false, ..objects[0] };
+    assert_eq!(culler.find_visible(None, &[glass, objects[1]], &picture).unwrap().len(), 2);
+    let empty = PictureView { width: 0, ..picture };
+    assert_eq!(culler.find_visible(None, &objects, &empty).unwrap_err().status, Status::OutOfRange);
+    assert!(ClusteredMesh::new(&corners, &[0, 1, 7], 0).is_err());
+    assert!(ClusteredMesh::new(&corners, &[0, 1, 2], 65).is_err());
+
+    let mut world = World::new().unwrap();
+    let precut = MeshData { clusters: true, precut: Some(&mesh), ..MeshData::new(&corners, &[0, 1, 2, 0, 2, 3]) };
+    let placed = world.add_mesh(&precut).unwrap();
+    world.update().unwrap();
+    let order = mesh.clusters().unwrap().triangle_order.to_vec();
+    assert_eq!(world.clusters_of(placed).unwrap().unwrap().triangle_order, order);
+    let other = MeshData { indices: Indices::U32(&[0, 1, 2]), ..precut };
+    assert_eq!(world.add_mesh(&other).unwrap_err().status, Status::InvalidArgument);
+}

@@ -133,19 +133,11 @@ fn vertices_and_indices_come_in_several_kinds() {
     let interleaved: Vec<f32> = TETRAHEDRON.iter().flat_map(|p| [p[0], p[1], p[2], 7.0, 8.0]).collect();
     let kinds = [
         MeshData::new(&TETRAHEDRON, &FACES),
-        MeshData {
-            vertices: Vertices::F64(&doubles),
-            indices: Indices::U16(&shorts),
-            triangles: true,
-            clusters: false,
-            one_sided: false,
-        },
+        MeshData { vertices: Vertices::F64(&doubles), indices: Indices::U16(&shorts), ..MeshData::new(&[], &[]) },
         MeshData {
             vertices: Vertices::Interleaved { floats: &interleaved, stride: 5 },
             indices: Indices::U32(&FACES),
-            triangles: true,
-            clusters: false,
-            one_sided: false,
+            ..MeshData::new(&[], &[])
         },
     ];
     let objects = kinds.map(|data| {
@@ -165,9 +157,7 @@ fn an_index_beyond_the_vertices_is_refused() {
     let half = MeshData {
         vertices: Vertices::Interleaved { floats: &[0.0; 7], stride: 3 },
         indices: Indices::None,
-        triangles: true,
-        clusters: false,
-        one_sided: false,
+        ..MeshData::new(&[], &[])
     };
     assert_eq!(world.add_mesh(&half).unwrap_err().status, Status::InvalidArgument);
 }
@@ -244,17 +234,10 @@ fn no_indices_are_no_triangles() {
     let mut world = World::new().unwrap();
     let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
     for indices in [Indices::U32(&[]), Indices::U16(&[])] {
-        let data =
-            MeshData { vertices: Vertices::F32(&corners), indices, triangles: true, clusters: false, one_sided: false };
+        let data = MeshData { vertices: Vertices::F32(&corners), indices, ..MeshData::new(&[], &[]) };
         assert_eq!(world.add_mesh(&data).unwrap_err().status, Status::Empty);
     }
-    let data = MeshData {
-        vertices: Vertices::F32(&corners),
-        indices: Indices::None,
-        triangles: true,
-        clusters: false,
-        one_sided: false,
-    };
+    let data = MeshData { vertices: Vertices::F32(&corners), indices: Indices::None, ..MeshData::new(&[], &[]) };
     assert!(world.add_mesh(&data).is_ok());
 }
 

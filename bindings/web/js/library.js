@@ -6,7 +6,10 @@ import { Boxes, Frustum } from './geometry.js';
 import { Tree, cullBoxes, classify } from './cull.js';
 import { fitBox } from './fit.js';
 import { Triangulator } from './triangulate.js';
-import { World, ViewResult } from './world.js';
+import { Region } from './region.js';
+import { ClusteredMesh, Shape } from './shape.js';
+import { ViewResult } from './views.js';
+import { World } from './world.js';
 
 /** Starts `build`; every class is a member of the result. */
 export async function loadLibrary(build, options = {}) {
@@ -19,7 +22,8 @@ export async function loadLibrary(build, options = {}) {
         /** The size of the library's memory in bytes. When it grows, views of it are detached. */
         get memoryBytes() { return memory.bytes.byteLength; },
         Boxes: bind(Boxes), Frustum: bind(Frustum), Tree: bind(Tree),
-        Triangulator: bind(Triangulator), World: bind(World), ViewResult: bind(ViewResult),
+        Triangulator: bind(Triangulator), World: bind(World), ViewResult: bind(ViewResult), Region: bind(Region), Shape: bind(Shape),
+        ClusteredMesh: bind(ClusteredMesh),
         cullBoxes: (boxes, frustum, visible, how) => cullBoxes(memory, boxes, frustum, visible, how),
         classify: (boxes, frustum) => classify(memory, boxes, frustum),
         fitBox: (points, how) => fitBox(memory, points, how),

@@ -1,131 +1,54 @@
 // SPDX-License-Identifier: MIT
 import { failure } from './error.js';
 import { Owned, checkArray, checkGroups, create, numbersOf } from './memory.js';
-import { BOX, DEPTH, roundedUp, writeCamera } from './geometry.js';
+import { ALL, IDENTITY, giveHandle, halvesOf, handleAt, layersOf, meshArrays, refAt, userAt, vectorAt, writeBound, writeBox, writeMesh,
+    writeTransform } from './records.js';
+import { shapeOf, writePlaced } from './shape.js';
+import { withRequests } from './views.js';
 
-const ALL = 0xffffffff;
+const PHASES = ['began', 'stayed', 'ended'], INSIDE = ['nothing', 'first', 'second', 'partly'];
 
-/** The answer of a view of a world, a tree or a list of boxes. Its arrays are valid until its next view or growth of memory. */
-export class ViewResult extends Owned {
-    constructor(memory) {
-        super(memory, 'ViewResult', create(memory, 'view_result'), '_crofton_view_result_destroy');
-    }
-    #list() {
-        const at = this.memory.scratch(16);
-        this.memory.call('view_result_ids', this.handle, at, at + 4, at + 8, 0);
-        return this.memory.words.subarray(at >> 2, (at >> 2) + 3);
-    }
-    get length() { return this.#list()[1]; }
-    /** Indices of objects: `object.index`. */
-    get ids() {
-        const [ids, count] = this.#list();
-        return this.memory.words.subarray(ids >> 2, (ids >> 2) + count);
-    }
-    /** 1: straddling, 2: inside, for each of `ids`. */
-    get verdicts() {
-        const [, count, verdicts] = this.#list();
-        return this.memory.bytes.subarray(verdicts, verdicts + count);
-    }
-    /** Data of the view: a struct of 192 bytes, in words. */
-    #info() {
-        const at = this.memory.scratch(192);
-        this.memory.words[at >> 2] = 192;
-        this.memory.call('view_result_get_view', this.handle, 0, at);
-        return this.memory.words.subarray(at >> 2, (at >> 2) + 48);
-    }
-    /** Indices of objects in the frustum that are hidden, with `listOccluded`. */
-    get occluded() {
-        const info = this.#info();
-        return this.memory.words.subarray(info[30] >> 2, (info[30] >> 2) + info[31]);
-    }
-    /** For a view with a picture: `{ object, cluster, triangles }`; bit k of the BigInt stands for triangle k of the cluster. */
-    get triangles() {
-        const info = this.#info(), { words } = this.memory;
-        return Array.from({ length: info[35] }, (_, i) => {
-            const [object, cluster, low, high] = words.subarray((info[34] >> 2) + 4 * i, (info[34] >> 2) + 4 * i + 4);
-            return { object, cluster, triangles: BigInt(low) + (BigInt(high) << 32n) };
-        });
-    }
-    /** The same as numbers, nothing is copied: object, cluster, and the low and the high half of the bits, for each. */
-    get triangleWords() {
-        const info = this.#info();
-        return this.memory.words.subarray(info[34] >> 2, (info[34] >> 2) + 4 * info[35]);
-    }
-    get statistics() {
-        const info = this.#info();
-        const names = ['nodesTested', 'boxesTested', 'acceptedWhole', 'straddling', 'exactTests', 'falsePositives', 'occludersDrawn'];
-        return Object.fromEntries(names.map((name, i) => [name, info[2 + 2 * i]]));
-    }
-}
-
-/** Copies bits by object index for the library. */
-function bitsOf(words, what) {
-    checkArray(words, [BigUint64Array, Uint32Array], what);
-    if (words.byteLength % 8) throw failure(1, `${what}: an even number of 32-bit words is expected`);
-    return words;
-}
-
-/** Arrays that a request points to, and the places of their pointers and counts in its struct or in that of its limits. */
-function arraysOf({ candidates, limits = {} }) {
-    const arrays = [];
-    if (candidates) arrays.push({ array: bitsOf(candidates, 'candidates'), of: 'request', place: 7, count: 8, unit: 8 });
-    const { layerDistances, itemDistances, drawnBefore } = limits;
-    if (layerDistances) {
-        checkArray(layerDistances, [Float32Array], 'layerDistances');
-        if (layerDistances.length !== 32) throw failure(1, 'layerDistances: 32 numbers are expected');
-        arrays.push({ array: layerDistances, of: 'limits', place: 12 });
-    }
-    if (itemDistances)
-        arrays.push({ array: checkArray(itemDistances, [Float32Array], 'itemDistances'), of: 'limits', place: 13, count: 14, unit: 4 });
-    if (drawnBefore) arrays.push({ array: bitsOf(drawnBefore, 'drawnBefore'), of: 'limits', place: 15, count: 16, unit: 8 });
-    return arrays;
-}
-
-/** Layers as 32 bits; -1 is all of them, as ALL is. */
-function layersOf(layers) {
-    if (!(Number.isInteger(layers) && layers >= -(2 ** 31) && layers < 2 ** 32)) throw failure(1, `layers: ${layers} is no whole number of 32 bits`);
-    return layers >>> 0;
-}
-
-/** A user number's low and high half. */
-function halvesOf(user) {
-    if (!(Number.isInteger(user) && user >= 0 && user < 2 ** 53)) throw failure(1, 'user is a whole number below 2^53');
-    return [user % 2 ** 32, Math.floor(user / 2 ** 32)];
-}
-
-/** Holds objects and answers queries about them. Changes take effect in `update`. An object is `{ index, generation }`. */
+/**
+ * Holds objects and answers queries about them. Changes take effect in `update`. Objects, meshes, nodes and attached regions are
+ * `{ kind, index, generation }`. `pairs`, `contacts`: whether updates find them.
+ */
 export class World extends Owned {
-    constructor(memory) {
-        const at = memory.scratch(56);
+    constructor(memory, { pairs = true, contacts = true, containment = true, meshDepth = false, contactMargin = 0 } = {}) {
+        const at = memory.scratch(56), { words } = memory;
         memory.fill('default_world_options', at);
-        memory.words[(at >> 2) + 1] = 0;  // pairs, which this build does not look for
+        words.set([pairs, contacts, containment, meshDepth].map(Number), (at >> 2) + 1);
+        memory.doubles[(at >> 3) + 6] = contactMargin;
         super(memory, 'World', create(memory, 'world', at), '_crofton_world_destroy');
     }
 
     /**
      * `positions`: Float32Array, x y z; `indices`: Uint32Array or Uint16Array, three a triangle. Both are copied. With `clusters`
-     * views with a picture list its triangles; `oneSided`: back faces are not drawn.
+     * views with a picture list its triangles; `oneSided`: back faces are not drawn; `precut`: its ClusteredMesh. Without `triangles` queries
+     * and contacts take the mesh for its box, and `update` need not prepare them.
      */
-    addMesh(positions, indices, { clusters = false, oneSided = false } = {}) {
-        checkArray(positions, [Float32Array], 'positions');
-        checkArray(indices, [Uint32Array, Uint16Array], 'indices');
-        checkGroups(positions, 3, 'positions');
-        if (indices.length === 0) throw failure(5, 'there are no indices, so there is no triangle');
-        const { memory } = this, { handle } = this;
-        return memory.lend([positions, indices, new Uint8Array(56)], (places, corners, at) => {
-            const isShort = indices instanceof Uint16Array ? 1 : 0;
-            memory.fill('default_mesh_data', at);
-            memory.words.set([places, positions.length / 3, 0, corners, indices.length, 0, isShort], (at >> 2) + 1);
-            memory.words.set([clusters ? 1 : 0, oneSided ? 1 : 0], (at >> 2) + 9);
+    addMesh(positions, indices, how) {
+        const { memory, handle } = this;
+        return memory.lend([...meshArrays(positions, indices), new Uint8Array(56)], (places, corners, at) => {
+            writeMesh(memory, at, places, corners, positions, indices, how);
             memory.call('world_add_mesh', handle, at, at + 48);
-            return this.#handleAt(at + 48, 'mesh');
+            return handleAt(memory, at + 48, 'mesh');
+        });
+    }
+    /** Moves the vertices of a mesh that deforms: as many as before. */
+    setVertices(mesh, positions) {
+        const { memory, handle } = this;
+        checkArray(positions, [Float32Array], 'positions');
+        checkGroups(positions, 3, 'positions');
+        memory.lend([positions, new Uint8Array(56)], (places, at) => {
+            writeMesh(memory, at, places, 0, positions, []);
+            memory.call('world_set_vertices', handle, giveHandle(memory, mesh, 'mesh', at + 48), at);
         });
     }
     /** Error: objects use the mesh. */
-    removeMesh(mesh) { this.memory.call('world_remove_mesh', this.handle, this.#give(mesh, 'mesh', this.memory.scratch(16))); }
+    removeMesh(mesh) { this.#on('remove_mesh', mesh, 'mesh'); }
     /** Returns the clusters of a mesh, as of the last update: `{ clusters: [{ firstTriangle, triangleCount }], triangleOrder }`. */
     clustersOf(mesh) {
-        const { memory } = this, at = this.#give(mesh, 'mesh', memory.scratch(32));
+        const { memory } = this, at = giveHandle(memory, mesh, 'mesh', memory.scratch(32));
         memory.words[at + 8 >> 2] = 24;
         memory.call('world_get_mesh', this.handle, at, at + 8);
         const { words } = memory, [clusters, count, order, triangles] = words.subarray(at + 16 >> 2, at + 32 >> 2);
@@ -135,37 +58,72 @@ export class World extends Owned {
     }
     /** Finds boxes inside `mesh`, if it is closed, that hide what is behind them. Objects hide nothing before this call. */
     findOccluders(mesh) {
-        this.memory.call('world_find_occluders', this.handle, this.#give(mesh, 'mesh', this.memory.scratch(16)), 0);
+        const { memory } = this;
+        memory.call('world_find_occluders', this.handle, giveHandle(memory, mesh, 'mesh', memory.scratch(16)), 0);
     }
-    /** Sets one convex occluder of a mesh: the hull of `positions`, within the drawn mesh. */
-    setConvexOccluder(mesh, positions) {
-        checkArray(positions, [Float32Array], 'positions');
-        checkGroups(positions, 3, 'positions');
-        const { memory } = this, { handle } = this;
-        memory.lend([positions, new Uint8Array(248)], (places, at) => {
-            memory.words.set([232, 2, 0, places, positions.length / 3], at >> 2);
-            memory.call('world_set_occluders', handle, this.#give(mesh, 'mesh', at + 232), at, 1);
+    /**
+     * Sets a mesh's occluders: `{ box }`, `{ walled: box }`, `{ convex: positions }`, `{ patch: { positions, indices, oneSided } }`, opaque
+     * and within the drawn mesh. None removes them.
+     */
+    setOccluders(mesh, occluders) {
+        const { memory, handle } = this, kinds = ['box', 'walled', 'convex', 'patch'], none = new Float32Array(0);
+        const arrays = occluders.flatMap(({ convex, patch }) =>
+            patch ? meshArrays(patch.positions, Uint32Array.from(patch.indices)) : [convex ? checkArray(convex, [Float32Array], 'convex') : none, none]);
+        memory.lend([new Float64Array(29 * occluders.length + 1), ...arrays], (first, ...places) => {
+            occluders.forEach((occluder, i) => {
+                const at = first + 232 * i, kind = kinds.findIndex((name) => occluder[name]);
+                if (kind < 0) throw failure(1, `an occluder is one of ${kinds.join(', ')}`, i);
+                checkGroups(arrays[2 * i], 3, 'positions');
+                memory.words.set([232, kind, occluder.patch?.oneSided ? 1 : 0, places[2 * i], arrays[2 * i].length / 3, places[2 * i + 1],
+                    arrays[2 * i + 1].length], at >> 2);
+                if (kind < 2) writeBox(memory, at + 32, occluder.box ?? occluder.walled);
+            });
+            const slot = first + 232 * occluders.length;
+            memory.call('world_set_occluders', handle, giveHandle(memory, mesh, 'mesh', slot), first, occluders.length);
         });
     }
 
-    /** `{ box: { center, halfExtents, axes } }`, `{ sphere: { center, radius } }` or `{ mesh, transform }`; `user`: a number. */
-    add({ box, sphere, mesh, transform, user = 0, layers = ALL, occludes = true }) {
-        if ([box, sphere, mesh].filter(Boolean).length !== 1) throw failure(1, 'an object has one of box, sphere and mesh');
+    /** Adds a node: it moves all that is below it. Objects below have only those of their layers that are also in `layers`. */
+    addNode({ parent, transform = IDENTITY, layers = ALL } = {}) {
+        const { memory } = this, at = memory.scratch(112);
+        if (parent) giveHandle(memory, parent, 'node', at + 96);
+        memory.call('world_add_node', this.handle, parent ? at + 96 : 0, writeTransform(memory, at, transform), layersOf(layers), at + 104);
+        return handleAt(memory, at + 104, 'node');
+    }
+    /** Removes the node with all nodes and objects below it. */
+    removeNode(node) { this.#on('remove_node', node, 'node'); }
+    /** Error: the parent is the node itself or one below it. */
+    setParent(node, parent) {
+        const { memory } = this, at = giveHandle(memory, node, 'node', memory.scratch(16));
+        memory.call('world_set_parent', this.handle, at, parent ? giveHandle(memory, parent, 'node', at + 8) : 0);
+    }
+    setNodeLayers(node, layers) {
+        const { memory } = this, at = giveHandle(memory, node, 'node', memory.scratch(16));
+        memory.call('world_set_node_layers', this.handle, at, layersOf(layers));
+    }
+    setNodeTransform(node, transform) { this.#move('set_node_transforms', node, 'node', transform); }
+
+    /**
+     * `{ box: { center, halfExtents, axes } }`, `{ sphere: { center, radius } }`, `{ mesh }` or only `{ shape }`; the last two with a `transform`,
+     * under a `node` or in the world. A shape beside another is what rays, casts and contacts use. `user`: a number. `onlyOccludes`: no answer
+     * contains the object, but its mesh hides others.
+     */
+    add({ box, sphere, mesh, shape, transform, node, user = 0, layers = ALL, collidesWith = ALL, occludes = true, onlyOccludes = false, hidden = false }) {
+        const given = [box, sphere, mesh].filter(Boolean).length;
+        if (given > 1 || given === 0 && !shape) throw failure(1, 'an object has one of box, sphere and mesh, or only a shape');
         const { memory } = this, at = memory.scratch(72 + 160 + 96 + 16), { words } = memory, first = at >> 2;
         memory.fill('default_object_description', at);
         words.set(halvesOf(user), first + 2);
-        if (box || sphere) this.#writeBound(at + 72, box, sphere), words[first + 4] = at + 72;
-        if (transform) this.#writeTransform(at + 232, transform), words[first + 5] = at + 232;
-        if (mesh) {
-            words[first + 6] = 1;
-            this.#give(mesh, 'mesh', at + 32);
-        }
-        words[first + 12] = layersOf(layers);
-        words[first + 14] = occludes ? 1 : 0;
+        if (box || sphere) writeBound(memory, at + 72, { box, sphere }), words[first + 4] = at + 72;
+        if (transform) words[first + 5] = writeTransform(memory, at + 232, transform);
+        if (mesh) giveHandle(memory, mesh, 'mesh', at + 32), words[first + 6] = 1;
+        if (node) giveHandle(memory, node, 'node', at + 40), words[first + 7] = 1;
+        words.set([layersOf(layers), layersOf(collidesWith), occludes ? 1 : 0, onlyOccludes ? 1 : 0, shape ? shapeOf(shape).handle : 0,
+            hidden ? 1 : 0], first + 12);
         memory.call('world_add', this.handle, at, at + 328);
-        return this.#handleAt(at + 328, 'object');
+        return handleAt(memory, at + 328, 'object');
     }
-    remove(object) { this.memory.call('world_remove', this.handle, this.#give(object, 'object', this.memory.scratch(16))); }
+    remove(object) { this.#on('remove', object, 'object'); }
     setHidden(object, hidden) {
         this.#set(object, 8, (words, first) => { words[first + 17] = hidden ? 1 : 0; });
     }
@@ -176,44 +134,95 @@ export class World extends Owned {
     setLayers(object, layers) {
         this.#set(object, 2, (words, first) => { words[first + 12] = layersOf(layers); });
     }
+    setCollidesWith(object, layers) {
+        this.#set(object, 4, (words, first) => { words[first + 13] = layersOf(layers); });
+    }
+    setOccludes(object, occludes) {
+        this.#set(object, 16, (words, first) => { words[first + 14] = occludes ? 1 : 0; });
+    }
+    /** For an object that has a mesh. */
+    setMesh(object, mesh) {
+        this.#set(object, 32, (words, first) => {
+            giveHandle(this.memory, mesh, 'mesh', 4 * first + 32);
+            words[first + 6] = 1;
+        });
+    }
+    /** Null removes the shape; not of an object that was added with only one. */
+    setShape(object, shape) {
+        this.#set(object, 128, (words, first) => { words[first + 16] = shape === null ? 0 : shapeOf(shape).handle; });
+    }
     setBox(object, box) {
         this.#set(object, 64, (words, first) => {
-            this.#writeBound(4 * first + 72, box);
+            writeBound(this.memory, 4 * first + 72, { box });
             words[first + 4] = 4 * first + 72;
         });
     }
     // Sets one member of an object, by its description.
     #set(object, member, fill) {
         const { memory } = this, at = memory.scratch(72 + 160 + 16);
-        this.#give(object, 'object', at + 232);
+        giveHandle(memory, object, 'object', at + 232);
         memory.fill('default_object_description', at);
         fill(memory.words, at >> 2);
         memory.call('world_set', this.handle, at + 232, member, at);
     }
-    setTransform(object, transform) {
-        const at = this.memory.scratch(112);
-        this.#writeTransform(at, transform);
-        this.memory.call('world_set_transforms', this.handle, this.#give(object, 'object', at + 96), 0, at, 0, 1);
+    setTransform(object, transform) { this.#move('set_transforms', object, 'object', transform); }
+    #move(name, what, kind, transform) {
+        const { memory } = this, at = memory.scratch(112);
+        writeTransform(memory, at, transform);
+        memory.call(`world_${name}`, this.handle, giveHandle(memory, what, kind, at + 96), 0, at, 0, 1);
+    }
+    #on(name, what, kind) {
+        const { memory } = this;
+        memory.call(`world_${name}`, this.handle, giveHandle(memory, what, kind, memory.scratch(16)));
     }
     contains(object) {
-        const at = this.memory.scratch(208);
-        this.#give(object, 'object', at);
-        this.memory.words[at + 8 >> 2] = 192;
+        const { memory } = this, at = memory.scratch(208);
+        giveHandle(memory, object, 'object', at);
+        memory.words[at + 8 >> 2] = 192;
         try {
-            this.memory.call('world_get_object', this.handle, at, at + 8);
+            memory.call('world_get_object', this.handle, at, at + 8);
             return true;
         } catch (error) {
             if (error.status === 'stale handle') return false;
             throw error;
         }
     }
-    get count() {
-        const at = this.memory.scratch(80);
-        this.memory.words[at >> 2] = 80;
-        this.memory.call('world_get_statistics', this.handle, at);
-        return this.memory.words[at + 64 >> 2];
+    /** As of the last update: `{ objects, resting, moving, boxesChanged, outOfRange }`. */
+    get statistics() {
+        const words = this.#statistics(), names = { objects: 2, resting: 4, moving: 6, boxesChanged: 12, outOfRange: 14 };
+        return Object.fromEntries(Object.entries(names).map(([name, place]) => [name, words[place]]));
     }
-    /** Applies the changes. Call it once a frame, before queries. */
+    get count() { return this.#statistics()[16]; }
+    #statistics() {
+        const { memory } = this, at = memory.scratch(80);
+        memory.words[at >> 2] = 80;
+        memory.call('world_get_statistics', this.handle, at);
+        return memory.words.subarray(at >> 2, (at >> 2) + 20);
+    }
+
+    /** Attaches a Region: from the next update on, answers contain its objects, moved by `origin`. */
+    attach(region, origin = [0, 0, 0]) {
+        const { memory } = this, at = memory.scratch(32);
+        memory.doubles.set(numbersOf(origin, 3, 'origin'), at >> 3);
+        memory.call('world_attach', this.handle, region.handle, at, at + 24);
+        return handleAt(memory, at + 24, 'region');
+    }
+    /** Handles of the region's objects are stale at once; views follow with the next update. */
+    detach(attached) { this.#on('detach', attached, 'region'); }
+    /** Returns the object at a place in the array that the region was made from. `setHidden` can hide it; other changes are errors. */
+    objectIn(attached, place) {
+        const { memory } = this, at = giveHandle(memory, attached, 'region', memory.scratch(16));
+        memory.call('world_object_in', this.handle, at, place, at + 8);
+        return handleAt(memory, at + 8, 'object');
+    }
+    /** Returns `{ region, place }` of an object. Error: it was added by `add`. */
+    placeOf(object) {
+        const { memory } = this, at = giveHandle(memory, object, 'object', memory.scratch(24));
+        memory.call('world_place_of', this.handle, at, at + 8, at + 16);
+        return { region: handleAt(memory, at + 8, 'region'), place: memory.words[at + 16 >> 2] };
+    }
+
+    /** Applies the changes, and finds pairs and contacts. Call it once a frame, before queries. */
     update() { this.memory.call('world_update', this.handle, 0); }
 
     /**
@@ -222,159 +231,139 @@ export class World extends Owned {
      * maxOccluders, leastCover }`; `picture`: `{ width, height, depth, samples }`, lists the triangles that it needs, instead of
      * occlusion; `receivers`: `{ seen, radius }`, with a picture that is a light's shadow map lists only the triangles whose shadows the
      * camera could see, whose view with a picture `seen` answered; `limits`: leaves out what is small or far; `candidates`: bits by object index, BigUint64Array or
-     * Uint32Array; `treeOrder`, `conservative`.
+     * Uint32Array; `treeOrder`, `conservative`. An array of up to 32 requests is answered at once, each object listed once.
      */
     view(request, visible) {
-        const { memory } = this, arrays = arraysOf(request);
-        memory.lend(arrays.map(({ array }) => array), (...places) => this.#view(request, visible, arrays, places));
+        const { memory } = this, requests = Array.isArray(request) ? request : [request];
+        withRequests(memory, requests, (at) => memory.call('world_view', this.handle, at, requests.length, 0, visible.handle));
         return visible;
     }
-    #view({ camera, matrix, depth = 'minusOneToOne', origin, volume, layers = ALL, occlusion, picture, receivers, limits, treeOrder,
-        conservative }, visible, arrays, places) {
-        // From `at` on: the camera, 128 limits, 256 the matrix, 432 occlusion, 464 the picture, 496 the request, 552 the receivers.
-        const { memory } = this, at = memory.scratch(568), { words, doubles, floats } = memory;
-        const request = at + 496, first = request >> 2, word = (name) => {
-            if (!(name in DEPTH)) throw failure(1, `depth is one of ${Object.keys(DEPTH).join(', ')}`);
-            return DEPTH[name];
-        };
-        const structs = { request, limits: at + 128 };
-        memory.fill('default_view_request', request);
-        if (camera) words[first + 1] = writeCamera(memory, camera, at);
-        if (matrix) {
-            if (matrix.length !== 16) throw failure(1, 'matrix must have 16 numbers');
-            const place = at + 256;
-            memory.fill('default_view_matrix', place);
-            words[(place >> 2) + 1] = place + 48;
-            words[(place >> 2) + 4] = word(depth);
-            if (origin) doubles.set(numbersOf(origin, 3, 'origin'), (place >> 3) + 3);
-            doubles.set(matrix, (place >> 3) + 6);
-            words[first + 2] = place;
-        }
-        if (volume) words[first + 3] = volume.handle + 8;
-        words[first + 4] = layersOf(layers);
-        if (occlusion) {
-            const options = at + 432;
-            memory.fill('default_occlusion_options', options);
-            for (const [name, place] of [['width', 1], ['height', 2], ['maxOccluders', 3]])
-                if (occlusion[name]) words[(options >> 2) + place] = occlusion[name];
-            words[(options >> 2) + 4] = occlusion.listOccluded ? 1 : 0;
-            if (occlusion.leastCover) floats[(options >> 2) + 5] = occlusion.leastCover;
-            words[first + 5] = options;
-        }
-        if (limits) {
-            const { eye, maxDistanceInRadii = Infinity, leastRadius = 0, hysteresis = 1 } = limits, place = structs.limits >> 3;
-            memory.fill('default_draw_limits', structs.limits);
-            doubles.set(numbersOf(eye, 3, 'eye'), place + 1);
-            doubles.set([maxDistanceInRadii === Infinity ? 0 : maxDistanceInRadii, leastRadius], place + 4);
-            doubles[place + 9] = hysteresis;
-            words[first + 6] = structs.limits;
-        }
-        if (picture) {
-            const { width = 1280, height = 720, depth: range = 'reversed', samples = 1 } = picture, place = at + 464;
-            memory.fill('default_picture_view', place);
-            words.set([width, height, word(range), samples], (place >> 2) + 1);
-            words[first + 11] = place;
-        }
-        if (receivers) {
-            const { seen, radius = 1 } = receivers, place = at + 552;
-            if (!(seen instanceof ViewResult)) throw failure(1, 'receivers: `seen` is a ViewResult');
-            memory.fill('default_shadow_receivers', place);
-            words[(place >> 2) + 1] = seen.handle;
-            doubles[(place >> 3) + 1] = radius;
-            words[first + 12] = place;
-        }
-        words[first + 9] = conservative ? 1 : 0;
-        words[first + 10] = treeOrder ? 1 : 0;
-        arrays.forEach(({ array, of, place, count, unit }, i) => {
-            words[(structs[of] >> 2) + place] = places[i];
-            if (count) words[(structs[of] >> 2) + count] = array.byteLength / unit;
+    /** Lists the occluders that hide an object in a view alone, `{ object, user, place }`; without an object all that were drawn. */
+    hiddenBy(visible, object) {
+        const { memory } = this, at = memory.scratch(16), hidden = object ? giveHandle(memory, object, 'object', at) : 0;
+        memory.call('view_result_occluders', visible.handle, this.handle, hidden, 0, 0, at + 8);
+        const count = memory.words[at + 8 >> 2];
+        return memory.lend([new Float64Array(3 * count)], (place) => {
+            memory.call('view_result_occluders', visible.handle, this.handle, hidden, place, count, at + 8);
+            return Array.from({ length: count }, (_, i) => ({ ...refAt(memory, place + 24 * i), place: memory.words[place + 24 * i + 16 >> 2] }));
         });
-        memory.call('world_view', this.handle, request, 1, 0, visible.handle);
-    }
-    /** Returns the nearest hit of a ray, `{ object, user, t, point, triangle, normal, startedInside }`, or null. */
-    raycast(origin, direction, maxT = Infinity, layers = ALL) {
-        const { memory } = this, at = memory.scratch(144), hit = at + 56 >> 2;
-        memory.doubles.set([...numbersOf(origin, 3, 'origin'), ...numbersOf(direction, 3, 'direction'), maxT], at >> 3);
-        memory.call('world_raycast', this.handle, at, 1, layersOf(layers), at + 56);
-        const { doubles, words } = memory;  // the call may have made the memory grow
-        if (words[hit] === ALL) return null;
-        return { object: this.#handleAt(at + 56, 'object'), user: this.#userAt(at + 64), t: doubles[at + 72 >> 3],
-            point: [...doubles.subarray(at + 80 >> 3, at + 104 >> 3)], triangle: words[hit + 12] === ALL ? -1 : words[hit + 12],
-            normal: [...doubles.subarray(at + 112 >> 3, at + 136 >> 3)], startedInside: (words[hit + 20] & 255) !== 0 };
     }
 
+    #writeRay(at, origin, direction, maxT) {
+        this.memory.doubles.set([...numbersOf(origin, 3, 'origin'), ...numbersOf(direction, 3, 'direction'), maxT], at >> 3);
+        return at;
+    }
+    #hitAt(at) {
+        const { memory } = this, { doubles, words } = memory, first = at >> 2;
+        return { ...refAt(memory, at), t: doubles[at + 16 >> 3], point: vectorAt(memory, at + 24),
+            triangle: words[first + 12] === ALL ? -1 : words[first + 12], child: words[first + 13],
+            normal: vectorAt(memory, at + 56), startedInside: (words[first + 20] & 255) !== 0 };
+    }
+    /** Returns the nearest hit of a ray, `{ object, user, t, point, triangle, child, normal, startedInside }`, or null. */
+    raycast(origin, direction, maxT = Infinity, layers = ALL) {
+        const { memory } = this, at = this.#writeRay(memory.scratch(144), origin, direction, maxT);
+        memory.call('world_raycast', this.handle, at, 1, layersOf(layers), at + 56);
+        return memory.words[at + 56 >> 2] === ALL ? null : this.#hitAt(at + 56);
+    }
+    /** Returns the nearest hit of each object that the ray hits, in order of t, then of index. */
+    raycastAll(origin, direction, maxT = Infinity, layers = ALL) {
+        return this.#find('hits', 88, (found, at) =>
+            this.memory.call('world_raycast_all', this.handle, this.#writeRay(at, origin, direction, maxT), layersOf(layers), found), (at) => this.#hitAt(at));
+    }
     /** Tells whether a ray hits anything; faster than `raycast`. */
     raycastAny(origin, direction, maxT = Infinity, layers = ALL) {
-        const { memory } = this, at = memory.scratch(64);
-        memory.doubles.set([...numbersOf(origin, 3, 'origin'), ...numbersOf(direction, 3, 'direction'), maxT], at >> 3);
+        const { memory } = this, at = this.#writeRay(memory.scratch(64), origin, direction, maxT);
         memory.call('world_raycast_any', this.handle, at, layersOf(layers), at + 56);
         return memory.words[at + 56 >> 2] !== 0;
     }
     /**
-     * Returns the objects that overlap `{ box }`, `{ sphere }` or `{ capsule: { begin, end, radius } }`, as `{ object, user }`, by index:
-     * triangles of meshes, boxes and spheres.
+     * Returns the objects that overlap `{ box }`, `{ sphere }`, `{ capsule: { begin, end, radius } }` or `{ shape, transform }`, as
+     * `{ object, user }`, by index: their shapes, triangles of meshes, boxes and spheres.
      */
     overlap(shape, layers = ALL) {
+        return this.#find('objects', 16, (found, at) =>
+            this.memory.call('world_overlap', this.handle, this.#writeShape(at, shape), layersOf(layers), found), (at) => refAt(this.memory, at));
+    }
+    // Asks for a list, and reads what it found.
+    #find(what, size, ask, read) {
         const { memory } = this, found = create(memory, 'found');
         try {
-            const at = memory.scratch(152);
-            memory.call('world_overlap', this.handle, this.#writeShape(at, shape), layersOf(layers), found);
-            memory.call('found_objects', found, at + 144, at + 148);
-            const [first, count] = memory.words.subarray(at + 144 >> 2, at + 152 >> 2);
-            return Array.from({ length: count }, (_, i) => this.#refAt(first + 16 * i));
+            const at = memory.scratch(256);
+            ask(found, at);
+            memory.call(`found_${what}`, found, at, at + 4);
+            return this.#list(at, size, read);
         } finally {
             memory.module._crofton_found_destroy(found);
         }
     }
+    // The list whose place and count are at `at`.
+    #list(at, size, read) {
+        const [first, count] = this.memory.words.slice(at >> 2, (at >> 2) + 2);
+        return Array.from({ length: count }, (_, i) => read(first + size * i));
+    }
     /** Returns the object nearest to a shape, `{ object, user, distance, onShape, onObject }`, no farther than `maxDistance`; or null. */
     closest(shape, maxDistance = Infinity, layers = ALL) {
-        const { memory } = this, at = memory.scratch(224), answer = at + 144;
+        const { memory } = this, at = memory.scratch(336), answer = at + 256;
         memory.words[answer >> 2] = 80;
         memory.call('world_closest', this.handle, this.#writeShape(at, shape), maxDistance, layersOf(layers), answer);
-        const { doubles, words } = memory, first = answer + 24 >> 3;
-        if (words[answer + 4 >> 2] === ALL) return null;
-        return { object: this.#handleAt(answer + 4, 'object'), user: this.#userAt(answer + 16), distance: doubles[first],
-            onShape: [...doubles.subarray(first + 1, first + 4)], onObject: [...doubles.subarray(first + 4, first + 7)] };
+        if (memory.words[answer + 4 >> 2] === ALL) return null;
+        return { object: handleAt(memory, answer + 4, 'object'), user: userAt(memory, answer + 16), distance: memory.doubles[answer + 24 >> 3],
+            onShape: vectorAt(memory, answer + 32), onObject: vectorAt(memory, answer + 56) };
     }
-    #writeShape(at, { box, sphere, capsule } = {}) {
-        if ([box, sphere, capsule].filter(Boolean).length !== 1) throw failure(1, 'a query has one of box, sphere and capsule');
-        const { words, doubles } = this.memory, { begin, end = begin, radius } = capsule ?? { begin: sphere?.center, radius: sphere?.radius };
-        words[at >> 2] = box ? 0 : sphere ? 1 : 2;
-        if (box) this.#writeBox(at + 8, box);
-        else doubles.set([...numbersOf(begin, 3, sphere ? 'center' : 'begin'), ...numbersOf(end, 3, 'end'), radius], at + 80 >> 3);
+    /**
+     * Returns the first object that a shape meets which moves by `velocity` and turns by `spin` radians a unit of time about its `pivot`:
+     * `{ object, user, time, normal, point, triangle, distance, unresolved }`, or null. The objects are at rest.
+     */
+    cast({ shape, transform }, { velocity = [0, 0, 0], spin = [0, 0, 0], pivot = [0, 0, 0], duration = 1, tolerance = 0, maxSteps = 0,
+        ignoreInitialOverlaps = false }, layers = ALL) {
+        const { memory } = this, at = memory.scratch(304), motion = at + 104, options = at + 176, hit = at + 208, { words, doubles } = memory;
+        doubles.set([...numbersOf(velocity, 3, 'velocity'), ...numbersOf(spin, 3, 'spin'), ...numbersOf(pivot, 3, 'pivot')], motion >> 3);
+        [words[options >> 2], words[hit >> 2]] = [32, 96];
+        doubles.set([duration, tolerance], (options >> 3) + 1);
+        words.set([maxSteps, ignoreInitialOverlaps ? 1 : 0], options + 24 >> 2);
+        memory.call('world_cast', this.handle, writePlaced(memory, at, shape, transform), motion, options, layersOf(layers), hit);
+        if (memory.words[hit + 4 >> 2] === ALL) return null;
+        return { object: handleAt(memory, hit + 4, 'object'), user: userAt(memory, hit + 16), time: memory.doubles[hit + 24 >> 3],
+            normal: vectorAt(memory, hit + 32), point: vectorAt(memory, hit + 56), triangle: memory.words[hit + 80 >> 2],
+            unresolved: memory.words[hit + 84 >> 2] === 2, distance: memory.doubles[hit + 88 >> 3] };
+    }
+    // A probe, in 248 bytes.
+    #writeShape(at, { box, sphere, capsule, shape, transform } = {}) {
+        if ([box, sphere, capsule, shape].filter(Boolean).length !== 1) throw failure(1, 'a query has one of box, sphere, capsule and shape');
+        const { memory } = this, { words, doubles } = memory;
+        words[at >> 2] = box ? 0 : sphere ? 1 : capsule ? 2 : 3;
+        if (box) writeBox(memory, at + 8, box);
+        else if (shape) writePlaced(memory, at + 144, shape, transform), words.copyWithin(at + 136 >> 2, at + 144 >> 2, at + 152 >> 2);
+        else {
+            const { begin, end = begin, radius } = capsule ?? { begin: sphere.center, radius: sphere.radius };
+            doubles.set([...numbersOf(begin, 3, sphere ? 'center' : 'begin'), ...numbersOf(end, 3, 'end'), radius], at + 80 >> 3);
+        }
         return at;
     }
-    #refAt(at) { return { object: this.#handleAt(at, 'object'), user: this.#userAt(at + 8) }; }
-    #userAt(at) { return this.memory.words[at >> 2] + 2 ** 32 * this.memory.words[(at >> 2) + 1]; }
 
-    // Objects and meshes each count from 0; `kind` tells a mesh from the object of the same number.
-    #give(handle, kind, at) {
-        if (handle?.kind !== kind || !Number.isInteger(handle.index) || !Number.isInteger(handle.generation))
-            throw failure(14, `this is no ${kind} of a world`);
-        this.memory.words.set([handle.index, handle.generation], at >> 2);
-        return at;
+    /** Returns the pairs of objects whose boxes or spheres overlap: `{ first, second }`, each `{ object, user }`, in order. */
+    pairs() {
+        const { memory } = this, at = memory.scratch(8);
+        memory.call('world_pairs', this.handle, at, at + 4);
+        return this.#list(at, 32, (place) => ({ first: refAt(memory, place), second: refAt(memory, place + 16) }));
     }
-    #handleAt(at, kind) {
-        const [index, generation] = this.memory.words.subarray(at >> 2, (at >> 2) + 2);
-        return { kind, index, generation };
-    }
-    #writeTransform(at, transform) {
-        if (transform.length !== 16) throw failure(1, 'a transform has 16 numbers, by columns');
-        if (![3, 7, 11, 15].every((i) => transform[i] === (i === 15 ? 1 : 0)))
-            throw failure(6, 'the last row of a transform is 0, 0, 0, 1: it has 16 numbers, by columns');
-        const column = (c) => [transform[4 * c], transform[4 * c + 1], transform[4 * c + 2]];
-        this.memory.doubles.set([0, 1, 2, 3].flatMap(column), at >> 3);
-    }
-    #writeBound(at, box, sphere) {
-        const { words, doubles } = this.memory;
-        words[at >> 2] = box ? 1 : 3;
-        if (sphere) return doubles.set([...numbersOf(sphere.center, 3, 'center'), sphere.radius], at + 128 >> 3);
-        this.#writeBox(at + 8, box);
-    }
-    #writeBox(at, { center, axes = [1, 0, 0, 0, 1, 0, 0, 0, 1], halfExtents }) {
-        const { doubles, floats } = this.memory;
-        doubles.set(numbersOf(center, 3, 'center'), at >> 3);
-        floats.set(numbersOf(axes, 9, 'axes'), at + 24 >> 2);
-        floats.set(numbersOf(halfExtents, 3, 'halfExtents').map(roundedUp), at + BOX - 12 >> 2);
+    /**
+     * Returns the pairs that touch, and those that have ended touching: `{ first, second, phase, inside, normal, depth, points, triangles,
+     * shapePoints }`. `memory` of a point of two shapes is a view of four numbers, yours until the next update or growth of memory: 0 when the
+     * point begins, kept while it stays.
+     */
+    contacts() {
+        const { memory } = this, at = memory.scratch(8);
+        memory.call('world_contacts', this.handle, at, at + 4);
+        return this.#list(at, 96, (place) => {
+            const { words, bytes, doubles } = memory, vector = (from) => vectorAt(memory, from);
+            return { first: refAt(memory, place), second: refAt(memory, place + 16), phase: PHASES[bytes[place + 32]], inside: INSIDE[bytes[place + 33]],
+                normal: vector(place + 40), depth: doubles[place + 64 >> 3],
+                points: this.#list(place + 72, 32, (p) => ({ position: vector(p), depth: doubles[p + 24 >> 3] })),
+                triangles: this.#list(place + 80, 80, (p) => ({ first: words[p >> 2], second: words[p + 4 >> 2], begin: vector(p + 8), end: vector(p + 32),
+                    normal: vector(p + 56) })),
+                shapePoints: this.#list(place + 88, 104, (p) => ({ position: vector(p), depth: doubles[p + 24 >> 3], normal: vector(p + 56),
+                    began: bytes[p + 80] !== 0, memory: memory.floats.subarray(p + 84 >> 2, p + 100 >> 2) })) };
+        });
     }
 }

@@ -8,11 +8,12 @@ export class Culling {
     #world; #seen; #inFrustum; #clusters; #objects;
 
     constructor(crofton, { meshes, objects }) {
-        this.#world = new crofton.World();
+        this.#world = new crofton.World({ pairs: false });
         this.#seen = new crofton.ViewResult();
         this.#inFrustum = new crofton.ViewResult();
         this.#objects = objects;
-        const handles = meshes.map(({ positions, indices }) => this.#world.addMesh(positions, indices, { clusters: true, oneSided: true }));
+        const handles = meshes.map(({ positions, indices }) => 
+            this.#world.addMesh(positions, indices, { clusters: true, oneSided: true, triangles: false }));
         objects.forEach(({ mesh, matrix }, i) => {
             const { index } = this.#world.add({ mesh: handles[mesh], transform: matrix });
             if (index !== i) throw new Error('objects of a new world are not numbered in turn');

@@ -177,11 +177,13 @@ for (const build of BUILDS) {
 
     here('every freed handle is a clear error', () => {
         const owned = [new crofton.Boxes(1), new crofton.Frustum(), new crofton.ViewResult(), new crofton.Triangulator(),
-            new crofton.World(), new crofton.Tree(one())];
+            new crofton.World(), new crofton.Tree(one()), new crofton.Shape({ sphere: { radius: 1 } }),
+            new crofton.Region([]), new crofton.ClusteredMesh(CUBE.positions, CUBE.indices)];
         for (const each of owned) each.free(), each.free();
-        const [boxes, frustum, visible, triangulator, world, tree] = owned;
+        const [boxes, frustum, visible, triangulator, world, tree, shape, region, clustered] = owned;
         for (const use of [() => boxes.get(0), () => frustum.planes, () => visible.ids, () => triangulator.triangulate(new Float64Array(6)),
-            () => world.update(), () => tree.refit()])
+            () => world.update(), () => tree.refit(), () => new crofton.Shape({ rounded: { core: shape, radius: 1 } }),
+            () => new crofton.World().attach(region), () => clustered.bytes])
             assert.throws(use, refused('bad handle'));
     });
     here('growth of memory detaches old views and no others', () => {
@@ -287,7 +289,7 @@ for (const build of BUILDS) {
     here('a wall hides what is behind it', () => {
         const world = new crofton.World(), visible = new crofton.ViewResult();
         const cube = world.addMesh(CUBE.positions, CUBE.indices), scaled = [5, 0, 0, 0, 0, 5, 0, 0, 0, 0, 0.5, 0, 0, 0, -5, 1];
-        world.setConvexOccluder(cube, CUBE.positions);
+        world.setOccluders(cube, [{ convex: CUBE.positions }]);
         const wall = world.add({ mesh: cube, transform: scaled });
         const behind = world.add({ mesh: cube, transform: translation(0, 0, -12) });
         world.update();
@@ -414,17 +416,6 @@ for (const build of BUILDS) {
         world.add({ mesh: cube, transform: translation(0, 0, -12) });
         world.update();
         assert.equal(world.view({ camera: {}, occlusion: {} }, visible).length, 1);
-    });
-    here('a world that looks for contacts is refused: this build finds none', () => {
-        const { memory } = new crofton.World(), slot = memory.allocate(8, 'a handle');
-        memory.call('world_create', 0, slot);
-        const world = memory.words[slot >> 2], at = memory.scratch(240), { words, doubles } = memory;
-        [words[at >> 2], words[at + 16 >> 2], words[at + 64 >> 2]] = [64, at + 64, 3];  // a description, its bound: a sphere
-        doubles.set([0, 0, -5, 1], at + 192 >> 3);
-        memory.call('world_add', world, at, at + 224);
-        assert.throws(() => memory.call('world_update', world, 0), refused('unsupported'));
-        memory.call('world_destroy', world);
-        memory.free(slot);
     });
     here('an object without a shape is refused', () => assert.throws(() => new crofton.World().add({}), refused('invalid argument')));
     here('a mesh with a missing corner is refused', () => assert.throws(

@@ -6,6 +6,7 @@
 #include <crofton/depth/clustered_mesh.hpp>
 #include <crofton/depth/depth_culler.hpp>
 #include <cstddef>
+#include <cstring>
 #include <functional>
 
 #include <crofton/capi/call.hpp>
@@ -100,6 +101,31 @@ crofton_status crofton_clustered_mesh_create(const crofton_mesh* mesh, uint32_t 
 
 crofton_status crofton_clustered_mesh_destroy(crofton_clustered_mesh* clustered) {
     return destroy(clustered, __func__);
+}
+
+crofton_status crofton_clustered_mesh_serialise(const crofton_clustered_mesh* clustered, uint8_t* bytes,
+                                                size_t capacity, size_t* count) {
+    const SharedUse use(clustered, __func__);
+    if (use.failed()) return use.status();
+    CROFTON_CHECK(check_pointer(count, __func__));
+    CROFTON_CHECK(check_array(bytes, capacity, __func__));
+    return recover(__func__, [&] {
+        const Vector<std::byte> stored = clustered->mesh.serialise();
+        if (stored.size() <= capacity) std::memcpy(bytes, stored.data(), stored.size());
+        *count = stored.size();
+        return CROFTON_OK;
+    });
+}
+
+crofton_status crofton_clustered_mesh_deserialise(const uint8_t* bytes, size_t count,
+                                                  crofton_clustered_mesh** clustered) {
+    CROFTON_CHECK(check_pointer(clustered, __func__));
+    CROFTON_CHECK(check_array(bytes, count, __func__));
+    return recover(__func__, [&, function = __func__] {
+        auto made = depth::ClusteredMesh::deserialise(std::as_bytes(std::span(bytes, count)));
+        if (!made) return report(made.error(), function);
+        return create(clustered, function, std::move(*made));
+    });
 }
 
 crofton_status crofton_clustered_mesh_get(const crofton_clustered_mesh* clustered, crofton_clusters* clusters) {

@@ -83,8 +83,11 @@ crofton_status create_mesh(const Description& given, crofton_shape** shape, cons
     TriangleMesh copy;
     CROFTON_CHECK(to_mesh(given.mesh, function, copy));
     return create_shape(shape, function, [&](ShapeData& data) -> Result<convex::Shape> {
+        if (const auto valid = validate(copy); !valid) return valid.error();
         auto tree = mesh::MeshTree::build(copy, {.rays = true});
         if (!tree) return tree.error();
+        if (!tree->rejected().empty())
+            return fail(ErrorCode::out_of_range, tree->rejected().front(), "mesh: a vertex is beyond 1e12");
         return convex::Shape::mesh(data.mesh.emplace(std::move(*tree)), sides_of(given));
     });
 }

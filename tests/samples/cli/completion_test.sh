@@ -46,7 +46,7 @@ expect 'exact fast tight' crofton fit --quality ''
 expect 'tight' crofton fit --quality ti
 expect 'README.md' crofton frames READ
 expect 'town' crofton frames to
-expect 'lines paper' crofton verify ''
+expect 'collide convex cull lines occlude paper pvs' crofton verify ''
 expect 'partner:' crofton fit --criterion part
 expect 'delaunay' crofton triangulate --method de
 expect 'random' crofton frames --camera ra
@@ -72,7 +72,7 @@ if command -v fish >/dev/null; then
     in_fish 'exact fast tight' 'crofton fit --quality '
     in_fish README.md 'crofton frames READ'
     in_fish 'partner:' 'crofton fit --criterion part'
-    in_fish 'lines paper' 'crofton verify '
+    in_fish 'collide convex cull lines occlude paper pvs' 'crofton verify '
     in_fish '--quality' 'crofton fit --qual'
 fi
 exit $failed

@@ -87,6 +87,8 @@ TEST_SUITE("cli/usage") {
             {"pvs room --shard 0/2", "--state"},
             {"study radiosity room --shard 0/2", "--runs"},
             {"study radiosity room --stored-lines 9", "--light-field"},
+            {"verify cull --map MAP01", "--scene"},
+            {"verify cull --instances 40", "--scene"},
             {"study lines room --patches 9", "--factors"}};
         for (const auto& refused : cases) {
             const std::string& reason = refused.second;

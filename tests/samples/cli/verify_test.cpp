@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <map>
 
 #include "run_cli.hpp"
@@ -45,6 +47,107 @@ TEST_SUITE("cli/verify") {
             CHECK(run.status == 0);
             CHECK(run.json().size() > 60);
             CHECK(run_cli(arguments).out == run.out);
+        }
+    }
+
+    TEST_CASE("culling is right for boxes, axis-aligned boxes and spheres at every offset, and says on how many") {
+        const CliRun run = run_cli("verify cull --trials 3000 --json -");
+        CHECK(run.status == 0);
+        std::map<std::string, std::uint64_t> proved;
+        for (const auto& row : run.json()) {
+            CHECK(row["holds"] == true);
+            const std::string claim = row["claim"];
+            const std::string kind = claim.substr(0, claim.find(':'));
+            if (claim.find(": of ") != std::string::npos && claim.find(" proved ") != std::string::npos)
+                proved[kind] += row["cases"].get<std::uint64_t>();
+        }
+        CHECK(proved == std::map<std::string, std::uint64_t>{
+                            {"axis-aligned boxes", 15000}, {"spheres", 15000}, {"boxes", 15000}});
+    }
+
+    TEST_CASE("nothing seen is culled, in set-ups that break others and in a whole scene") {
+        CliRun run = run_cli("verify occlude --trials 3000 --json -");
+        CHECK(run.status == 0);
+        std::size_t rows = 0;
+        for (const auto& row : run.json()) {
+            CHECK(row["holds"] == true);
+            const std::string claim = row["claim"];
+            if (claim.find("witness") == std::string::npos) continue;
+            ++rows;
+            CHECK(row["cases"].get<std::uint64_t>() > 0);
+        }
+        CHECK(rows == 13);
+        run = run_cli("verify occlude --scene town --trials 5000 --json -");
+        CHECK(run.status == 0);
+        CHECK(run.json().size() == 4);
+        for (const auto& row : run.json()) {
+            CHECK(row["holds"] == true);
+            CHECK(row["cases"].get<std::uint64_t>() > 1000);
+            CHECK(row["claim"].get<std::string>().find("(0.0 %") == std::string::npos);
+        }
+        CHECK(run_cli("verify lines --scene town").status == 2);
+        run = run_cli("verify occlude --scene no_such_scene.obj");
+        CHECK(run.status == 2);
+        CHECK(run.err.find("no_such_scene.obj") != std::string::npos);
+    }
+
+    TEST_CASE("no pair above epsilon is missed in the town, and no ray or street view meets what is proved hidden") {
+        const CliRun run = run_cli("verify pvs --trials 40000 --json -");
+        CHECK(run.status == 0);
+        CHECK(run.json().size() == 3);
+        for (const auto& row : run.json()) {
+            CHECK(row["holds"] == true);
+            CHECK(row["cases"].get<std::uint64_t>() > 100);
+        }
+    }
+
+    TEST_CASE("shapes that nearly touch, hulls, meshes and maps as shapes are exact") {
+        CliRun run = run_cli("verify collide --trials 1000 --json -");
+        CHECK(run.status == 0);
+        for (const auto& row : run.json()) CHECK(row["holds"] == true);
+        const auto all = run.json();
+        run = run_cli("verify convex --trials 1000 --json -");
+        CHECK(run.status == 0);
+        const auto part = run.json();
+        REQUIRE(part.size() == 76);
+        for (std::size_t i = 0; i < part.size(); ++i) CHECK(part[i] == all[all.size() - part.size() + i]);
+        const std::string mesh = scratch().file("tetrahedra.obj"), map = scratch().file("squares.poly"),
+                          tests = "--trials 8000 --json -";
+        std::ofstream(mesh)
+            << "v 0 0 0\nv 4 0 0\nv 0 4 0\nv 0 0 4\nv 4 4 4\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\nf 2 5 3\n"
+               "f 3 5 4\nf 4 5 2\n";
+        std::ofstream(map) << "P high 1\n4 0 0 9 0 9 4 0 4\nP low 2\n4 0 4 9 4 9 9 0 9\n4 2 5 3 5 3 6 2 6\n";
+        run = run_cli("verify collide --scene " + mesh + " --scene " + map + " " + tests);
+        CHECK(run.status == 0);
+        CHECK(run.json().size() == 8 + 4);
+        std::size_t fields = 0;
+        for (const auto& row : run.json()) {
+            CHECK(row["holds"] == true);
+            CHECK(row["cases"].get<std::uint64_t>() > 0);
+            fields += row["claim"].get<std::string>().find("height field") != std::string::npos;
+        }
+        CHECK(fields == 3);
+        run = run_cli("verify collide --scene no_such_map.poly");
+        CHECK(run.status == 2);
+        CHECK(run.err.find("no_such_map.poly") != std::string::npos);
+    }
+
+    TEST_CASE("any level of a WAD, by its name") {
+        const std::string wad = std::string(CROFTON_SHARED_DATA) + "/scenes/freedoom2_maps.wad";
+        if (!std::filesystem::exists(wad)) {
+            MESSAGE("skipped: no shared data");
+            return;
+        }
+        for (const std::string topic : {"occlude", "collide"}) {
+            const CliRun run = run_cli("verify " + topic + " --scene " + wad + " --map MAP02 --trials 1000 --json -");
+            CHECK(run.status == 0);
+            for (const auto& row : run.json()) {
+                CHECK(row["holds"] == true);
+                CHECK(row["claim"].get<std::string>().rfind("freedoom2_maps.wad MAP02", 0) == 0);
+            }
+            const CliRun missing = run_cli("verify " + topic + " --scene " + wad + " --map MAP99");
+            CHECK(missing.status == 2);
+            CHECK(missing.err.find("MAP99") != std::string::npos);
         }
     }
 

@@ -554,4 +554,66 @@ TEST_SUITE("convex/surface_contact") {
             }
         }
     }
+
+    TEST_CASE("a half-space holds a mesh or field by its deepest corners, along the half-space's normal, anywhere") {
+        RandomShapes random(4602);
+        Manifolds found;
+        int touching = 0;
+        for (int i = 0; i < 600; ++i) {
+            std::vector<float> heights(16);
+            for (float& height : heights) height = static_cast<float>(random.number(-0.5, 0.5));
+            const HeightField field = HeightField::build({4, 4, heights, glm::dvec2(0.5)}).value();
+            Surface s;
+            switch (i % 4) {
+                case 0:
+                    s = soup(random, 12, 1.0, 0.5);
+                    break;
+                case 1:
+                    s = tangle(random, 8, 20);
+                    break;
+                case 2:
+                    s = ground(random, 4, 0.5, [&](double, double) { return random.number(-0.3, 0.3); });
+                    break;
+                default:
+                    for (std::uint32_t row = 0; row < 4; ++row)
+                        for (std::uint32_t column = 0; column < 4; ++column)
+                            s.mesh.positions.emplace_back(field.corner(column, row));
+            }
+            const Shape shape = i % 4 == 3 ? Shape::height_field(field, Sides::both) : s.shape();
+            const glm::dvec3 normal = random.direction();
+            const Shape half = Shape::half_space({random.number(0.5, 2.0) * normal, random.number(-1.5, 1.5)}).value();
+            const RigidTransform pose{random.rotation(), random.number(0.0, 3.0) * random.direction()},
+                level{random.rotation(), random.direction()};
+            const double length = glm::length(half.plane().normal);
+            const glm::dvec3 into = level.rotation * (half.plane().normal / length);
+            const auto depth_at = [&](const glm::dvec3& p) {
+                return glm::dot(into, p - level.translation) + half.plane().offset / length;
+            };
+            double deepest = -HUGE_VAL;
+            for (const glm::vec3& p : s.mesh.positions)
+                deepest = std::max(deepest, depth_at(transform(pose, glm::dvec3(p))));
+            const bool flip = i % 8 < 4;
+            const ShapeAtPose surface{shape, pose}, solid{half, level};
+            const double margin = i % 3 == 0 ? 0.1 : 0.0;
+            contact_manifolds(flip ? solid : surface, flip ? surface : solid, {.margin = margin}, found);
+            CAPTURE(i);
+            if (std::abs(deepest + margin) < 1e-9) continue;
+            REQUIRE(found.all().size() == (deepest > -margin ? 1u : 0u));
+            if (found.all().empty()) continue;
+            ++touching;
+            const Manifold& m = found.all()[0];
+            CHECK(m.depth == doctest::Approx(deepest).epsilon(1e-9));
+            CHECK(glm::distance(m.normal, flip ? -into : into) < 1e-9);
+            for (int k = 0; k < m.count; ++k) {
+                const ContactPoint& point = m.points[k];
+                const glm::dvec3 corner = point.position + 0.5 * point.depth * into;
+                CHECK(std::abs(depth_at(corner) - point.depth) < 1e-9);
+                double nearest = HUGE_VAL;
+                for (const glm::vec3& p : s.mesh.positions)
+                    nearest = std::min(nearest, glm::distance(corner, transform(pose, glm::dvec3(p))));
+                CHECK(nearest < 1e-9);
+            }
+        }
+        CHECK(touching > 300);
+    }
 }

@@ -2,10 +2,14 @@
 // What different calls of a World say of the same objects agrees: on a grid of integers, where ties are the rule and
 // every answer can be told exactly.
 #include <doctest/doctest.h>
+#include <array>
+#include <cmath>
 #include <crofton/convex/query.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <limits>
+#include <optional>
 #include <oracle/near_misses.hpp>
+#include <oracle/random_boxes.hpp>
 #include <set>
 #include <shape/mesh/meshes.hpp>
 #include <vector>
@@ -171,5 +175,118 @@ TEST_SUITE("world/agreement") {
             REQUIRE(world.update().has_value());
             CHECK(world.contacts().empty());
         }
+    }
+
+    TEST_CASE("the nearest object is found within its own distance, and within no less, by any probe") {
+        NearMisses random(4603);
+        const auto cone = convex::Shape::cone(0.75f, 0.5f).value(),
+                   ground = convex::Shape::half_space({{0, -1, 0}, -30}).value();
+        const TriangleMesh cube = testing::box_mesh(glm::vec3(-1.0f), glm::vec3(1.0f));
+        int apart = 0;
+        for (const double far : {0.0, 1e4, 1e7}) {
+            World world;
+            const MeshHandle mesh = world.add_mesh(described(cube)).value();
+            for (int i = 0; i < 16; ++i) {
+                const glm::dvec3 place = far + 8.0 * random.vector(-1, 1);
+                const glm::dmat3 axes(oracle::random_box(random, {}, 1.0).axes);
+                ObjectDescription thing{.transform = Transform{axes, place}};
+                if (i % 4 == 0) thing = {.bound = Obb{place, glm::mat3(axes), {0.5f, 1.0f, 0.25f}}};
+                if (i % 4 == 1) thing = {.bound = Sphere{place, random.number(0.1, 1.0)}};
+                if (i % 4 == 2) thing.mesh = mesh, thing.transform->linear[0] *= i % 8 == 2 ? 1.0 : 1.5;
+                if (i % 4 == 3) thing.shape = &cone;
+                REQUIRE(world.add(thing).has_value());
+            }
+            if (far == 1e4) REQUIRE(world.add({.shape = &ground}).has_value());
+            REQUIRE(world.update().has_value());
+            for (int i = 0; i < 400; ++i) {
+                CAPTURE(i);
+                const glm::dvec3 place = far + 12.0 * random.vector(-1, 1);
+                const RigidTransform pose{glm::dmat3(oracle::random_box(random, {}, 1.0).axes), place};
+                const auto within = [&](double distance) {
+                    if (i % 4 == 0)
+                        return world.closest(Obb{place, glm::mat3(pose.rotation), glm::vec3(0.25f)}, distance);
+                    if (i % 4 == 1) return world.closest(Sphere{place, 0.3}, distance);
+                    if (i % 4 == 2) return world.closest(collide::Capsule{place, place + 1.0, 0.1}, distance);
+                    return world.closest(cone, pose, distance);
+                };
+                const auto nearest = within(1e9);
+                REQUIRE(nearest.has_value());
+                const auto again = within(nearest->distance);
+                REQUIRE(again.has_value());
+                CHECK(again->object == nearest->object);
+                CHECK(again->distance == nearest->distance);
+                CHECK(!std::signbit(nearest->distance));
+                if (nearest->distance == 0.0) continue;
+                ++apart;
+                CHECK(!within(std::nextafter(nearest->distance, 0.0)));
+            }
+        }
+        CHECK(apart > 800);
+    }
+
+    TEST_CASE("no t of a ray, and no time or distance of a cast, is -0") {
+        NearMisses random(4604);
+        const TriangleMesh cube = testing::box_mesh(glm::vec3(-1.0f), glm::vec3(1.0f));
+        const mesh::MeshTree tree = mesh::MeshTree::build(cube, {.rays = true}).value();
+        const std::array children{
+            convex::CompoundChild{convex::Shape::sphere(1.0).value(), {glm::dmat3(1.0), {1, 0, 0}}},
+            convex::CompoundChild{convex::Shape::box(glm::vec3(1.0f)).value(), {}}};
+        const convex::Compound compound = convex::Compound::build(children).value();
+        const std::array shapes{convex::Shape::sphere(1.0).value(),
+                                convex::Shape::capsule(1, 1).value(),
+                                convex::Shape::cylinder(1, 1).value(),
+                                convex::Shape::cone(1, 1).value(),
+                                children[1].shape,
+                                convex::Shape::mesh(tree).value(),
+                                convex::Shape::compound(compound),
+                                convex::Shape::half_space({{0, -1, 0}, -1}).value()};
+        const auto signed_grid = [&](int reach) {
+            glm::dvec3 point = grid_point(random, reach);
+            for (int k = 0; k < 3; ++k)
+                if (point[k] == 0.0 && random.index(2) == 0) point[k] = -0.0;
+            return point;
+        };
+        const auto is_good = [](double value) { return value != 0.0 || !std::signbit(value); };
+        int at_zero = 0;
+        for (int i = 0; i < 6000; ++i) {
+            CAPTURE(i);
+            const convex::Shape& shape = shapes[random.index(8)];
+            const RigidTransform pose{glm::dmat3(1.0), signed_grid(2)}, from{glm::dmat3(1.0), signed_grid(3)};
+            const double end = std::array{HUGE_VAL, 1.0, 0.0, -0.0}[random.index(4)];
+            const Ray ray{from.translation, signed_grid(2), end};
+            World world;
+            if (i % 4 != 0) {
+                REQUIRE(world.add({.transform = Transform{glm::dmat3(1.0), pose.translation}, .shape = &shape})
+                            .has_value());
+            } else {
+                const MeshHandle mesh = world.add_mesh(described(cube)).value();
+                REQUIRE(
+                    world.add({.mesh = mesh, .transform = Transform{glm::dmat3(1.0), pose.translation}}).has_value());
+            }
+            REQUIRE(world.update().has_value());
+            if (const auto hit = convex::raycast({shape, pose}, ray)) {
+                CHECK(is_good(hit->t));
+                at_zero += hit->t == 0.0;
+            }
+            if (const auto hit = world.raycast(ray)) CHECK(is_good(hit->t));
+            const std::array<Ray, 4> rays{ray, ray, ray, ray};
+            std::array<std::optional<mesh::TriangleHit>, 4> hits;
+            mesh::raycast(rays, tree, hits);
+            for (const auto& hit : hits)
+                if (hit) CHECK(is_good(hit->t));
+            if (const auto hit = mesh::raycast(ray, tree)) CHECK(is_good(hit->t));
+            convex::CastOptions options{.duration = end == HUGE_VAL ? 1.0 : end};
+            options.early_out = random.index(4) == 0 ? -0.0 : HUGE_VAL;
+            const convex::Shape& mover = shapes[random.index(7)];
+            const auto met = convex::cast({mover, from}, {signed_grid(4)}, {shape, pose}, {}, options);
+            REQUIRE(met.has_value());
+            CHECK(is_good(met->time));
+            CHECK(is_good(met->distance));
+            const auto hit = world.cast(mover, from, {signed_grid(4)}, options);
+            REQUIRE(hit.has_value());
+            if (*hit) CHECK(is_good((*hit)->time));
+            if (*hit) CHECK(is_good((*hit)->distance));
+        }
+        CHECK(at_zero > 300);
     }
 }

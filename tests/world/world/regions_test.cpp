@@ -606,22 +606,12 @@ TEST_SUITE("world/regions") {
                 object.collides_with = random.index(8) != 0 ? 2u : 8u;
             }
             const Region region = Region::prepare(objects, {.meshes = solids.meshes}).value();
-            // Of an object of a region, by its number less the first of its region.
-            const auto of_region = [&](std::uint64_t number) -> const RegionObject& {
-                return objects[static_cast<std::size_t>((number - 37) % 120)];
-            };
-            // Whether a pair's contact is one of the region's object's box, which is wider than the single's.
-            const auto by_box = [&](std::uint64_t a, std::uint64_t b) {
-                if (b <= 36 || !worlds.is_solid[b] || of_region(b).mesh != kNoIndex) return false;
-                return (a - 1) % 3 != 2;
-            };
             using Touching = std::tuple<std::uint64_t, std::uint64_t, ContactPhase, mesh::Containment, double, double,
                                         double, double, std::vector<double>, std::size_t>;
-            std::size_t touched = 0, with_triangles = 0, ended = 0, of_shapes = 0, of_boxes = 0;
-            const auto contacts_of = [&](const World& world, bool boxes) {
+            std::size_t touched = 0, with_triangles = 0, ended = 0, of_shapes = 0;
+            const auto contacts_of = [&](const World& world) {
                 std::vector<Touching> result;
                 for (const Contact& contact : world.contacts()) {
-                    if (by_box(worlds.number(contact.first), worlds.number(contact.second)) != boxes) continue;
                     std::vector<double> points;
                     for (const convex::TrackedPoint& point : contact.shape_points) {
                         for (int k = 0; k < 3; ++k) points.push_back(point.contact.position[k]);
@@ -639,7 +629,6 @@ TEST_SUITE("world/regions") {
                     with_triangles += b > 36 && !contact.triangles.empty();
                     ended += b > 36 && contact.phase == ContactPhase::ended;
                     of_shapes += b > 36 && !contact.shape_points.empty();
-                    of_boxes += b > 36 && boxes;
                 }
                 std::sort(result.begin(), result.end());
                 return result;
@@ -691,11 +680,9 @@ TEST_SUITE("world/regions") {
                 std::sort(found.begin(), found.end());
                 std::sort(expected.begin(), expected.end());
                 REQUIRE(found == expected);
-                REQUIRE(contacts_of(worlds.with, false) == contacts_of(worlds.single, false));
-                REQUIRE(contacts_of(worlds.with, true) == contacts_of(worlds.boxes, true));
+                REQUIRE(contacts_of(worlds.with) == contacts_of(worlds.single));
             }
             CHECK(of_shapes > 100);
-            CHECK(of_boxes > 100);
             CHECK(touched > 1000);
             CHECK(with_triangles > 100);
             CHECK(ended > 100);
@@ -706,7 +693,7 @@ TEST_SUITE("world/regions") {
                 worlds.boxes.remove(object.boxed).value();
             }
             worlds.update();
-            CHECK(contacts_of(worlds.with, false) == contacts_of(worlds.single, false));
+            CHECK(contacts_of(worlds.with) == contacts_of(worlds.single));
             CHECK(worlds.with.pairs().empty());
             worlds.update();
             CHECK(worlds.with.contacts().empty());

@@ -69,22 +69,6 @@ TEST_SUITE("world/shapes") {
         CHECK(world.closest(box, above, 1e9)->distance == 2.0 - radius);
     }
 
-    TEST_CASE("if only one of a pair has a shape, their bounds touch, as if there were no shape") {
-        World world;
-        const convex::Shape crate = convex::Shape::box({0.5f, 0.5f, 0.5f}).value();
-        const ObjectHandle floor = world.add({.bound = Obb{{}, glm::mat3(1.0f), {9, 1, 9}}}).value();
-        const ObjectHandle box = world.add({.bound = Obb{{0, 1.25, 0}, glm::mat3(1.0f), glm::vec3(0.5f)}}).value();
-        for (const ObjectHandle with_shape : {floor, box}) {
-            REQUIRE(world.set_shape(floor, with_shape == floor ? &crate : nullptr).has_value());
-            REQUIRE(world.set_shape(box, with_shape == box ? &crate : nullptr).has_value());
-            REQUIRE(world.update().has_value());
-            REQUIRE(world.contacts().size() == 1);
-            CHECK(world.contacts()[0].shape_points.empty());
-            CHECK(world.contacts()[0].points.size() == 4);
-            CHECK(world.contacts()[0].depth == doctest::Approx(0.25));
-        }
-    }
-
     TEST_CASE("a cast far from the origin hits what it just reaches") {
         for (const double far : {0.0, 1e6, 1e9, 1e11}) {
             World world;

@@ -18,6 +18,7 @@ struct Contact {
     double distance = 0.0;  // negative: how deep they overlap
     double lower = 0.0;     // proven
     glm::dvec3 normal{0.0}, on_a{0.0}, on_b{0.0};
+    bool closed = false;  // in closed form
 };
 Contact contact_of(const Distance& d) {
     return {d.distance, d.lower, d.normal, d.on_a, d.on_b};
@@ -59,6 +60,7 @@ bool triangle_contact(const ShapeAtPose& triangle, const ShapeAtPose& other, Con
     contact.normal = touch.normal;
     contact.on_a = origin + touch.on_a;
     contact.on_b = contact.on_a - touch.depth * touch.normal;
+    contact.closed = true;
     return kind != Kind::box || touch.depth <= other.shape.radius() ||
            lie_on_both(corners, triangle, other, contact.on_a, contact.on_b, 1e-10 * pair.size);
 }
@@ -109,14 +111,14 @@ Impact Advancement::impact(CastResult result, const Contact& now, int steps) con
     impact.normal = now.normal;
     impact.on_a = flight_.in_world(now.on_a);
     impact.on_b = flight_.in_world(now.on_b);
-    impact.distance = now.distance;
+    impact.distance = now.distance + 0.0;  // never −0
     impact.steps = steps;
     return impact;
 }
 
 Impact Advancement::miss(int steps) const {
     Impact impact;
-    impact.time = early_;
+    impact.time = early_ + 0.0;
     impact.steps = steps;
     return impact;
 }
@@ -209,7 +211,7 @@ Impact Advancement::run() {
         if (reached && within) return first;
         const bool was_within = within;
         const bool nearer = within && now.distance < first.distance;
-        if (reached || !(proven(now) > 0.0) || (now.distance < tolerance && !nearer)) now = contact();
+        if (!now.closed && (reached || !(proven(now) > 0.0) || (now.distance < tolerance && !nearer))) now = contact();
         const double gap = proven(now);
         const bool touching = !(gap > 0.0), starts = flight_.time() == start_;
         if (!touching && now.distance >= tolerance) {

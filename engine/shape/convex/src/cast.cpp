@@ -42,7 +42,7 @@ Result<void> check(const CastOptions& options) {
 
 Impact miss(const CastOptions& options) {
     Impact impact;
-    impact.time = std::min(options.early_out, options.duration);
+    impact.time = std::min(options.early_out, options.duration) + 0.0;  // never −0
     return impact;
 }
 

@@ -71,13 +71,13 @@ bool Gatherer::lacks_deepest(double tolerance) const {
     return true;
 }
 
+ContactPoint deepest_point(const Gathering& of, const Touch& touch) {
+    const glm::dvec3 p = touch.on_a + of.radius_a * touch.normal, q = touch.on_b - of.radius_b * touch.normal;
+    return {of.origin + 0.5 * (p + q), touch.depth, touch.feature_a, touch.feature_b, {}, {}};
+}
+
 void Gatherer::add_deepest() {
-    of_.margin = HUGE_VAL;
-    const int before = points.count;
-    add(touch_.on_a, touch_.on_b, touch_.feature_a, touch_.feature_b);
-    if (points.count == before) return;
-    ContactPoint deepest = points.point[--points.count];
-    deepest.depth = touch_.depth;
+    const ContactPoint deepest = deepest_point(of_, touch_);
     int place = 0;
     while (place < points.count && !has_same_id(points.point[place], deepest)) ++place;
     points.point[place] = deepest;

@@ -16,6 +16,9 @@ struct Gathering {
     double radius_a, radius_b, margin, size;
 };
 
+// The middle between the surfaces at the touch's deepest points. Its features are known.
+[[nodiscard]] ContactPoint deepest_point(const Gathering& of, const Touch& touch);
+
 class Gatherer {
   public:
     Gatherer(const Gathering& of, const Touch& touch, GatheredPoints& to) : points(to), of_(of), touch_(touch) {}
@@ -26,7 +29,7 @@ class Gatherer {
     // Whether the patches have left out the deepest place by more than `tolerance`.
     [[nodiscard]] bool lacks_deepest(double tolerance) const;
     [[nodiscard]] double size() const { return of_.size; }
-    // In place of a point with the same id, where there is one. The touch's features are known.
+    // In place of a point with the same id, where there is one.
     void add_deepest();
 
     GatheredPoints& points;

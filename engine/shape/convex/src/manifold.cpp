@@ -68,15 +68,26 @@ Manifold finish(const GatheredPoints& points, const Touch& touch, const Manifold
     return manifold;
 }
 
-// The touch's deepest points alone, as Gatherer::add_deepest() has them.
+// The touch's deepest points alone.
 Manifold at_deepest(const ShapeAtPose& a, const ShapeAtPose& b, const Touch& touch) {
     Manifold manifold;
     manifold.normal = touch.normal;
     manifold.depth = touch.depth;
     manifold.count = 1;
-    const glm::dvec3 p = touch.on_a + a.shape.radius() * touch.normal, q = touch.on_b - b.shape.radius() * touch.normal;
-    manifold.points[0] = {a.pose.translation + 0.5 * (p + q), touch.depth, touch.feature_a, touch.feature_b, {}, {}};
+    manifold.points[0] = deepest_point(gathering_of(a, b, 0.0, 0.0), touch);
     return manifold;
+}
+
+// Where one shape's core is a point.
+Manifold at_point(const ShapeAtPose& a, const ShapeAtPose& b, Touch& touch, PairCache* cache) {
+    if (cache != nullptr) cache->reference = 0;
+    Patch patch_a, patch_b;
+    if (!(touch.known || (touch.vertex_count > 0 && a.shape.has_polytope_core() && b.shape.has_polytope_core()))) {
+        patch_along(a, touch.normal, a.pose.translation, patch_a);
+        patch_along(b, -touch.normal, a.pose.translation, patch_b);
+    }
+    name_features(a.shape, b.shape, patch_a, patch_b, touch);
+    return at_deepest(a, b, touch);
 }
 
 // What the touch's patches have in common, clipped against the face of a (1) or of b (2).
@@ -154,6 +165,7 @@ Manifold contact_manifold(const ShapeAtPose& a, const ShapeAtPose& b, const Mani
         touch = {};
     }
     if (!find_touch(pair, options.margin, cache, touch)) return nothing();
+    if (a.shape.vertex_count() == 1 || b.shape.vertex_count() == 1) return at_point(a, b, touch, cache);
     Patch patch_a, patch_b;
     patch_along(a, touch.normal, a.pose.translation, patch_a);
     patch_along(b, -touch.normal, a.pose.translation, patch_b);

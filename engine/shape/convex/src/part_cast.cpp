@@ -29,7 +29,7 @@ class PartCaster {
     PartCaster(const ShapeAtPose& a, const Motion& motion_a, const ShapeAtPose& b, const Motion& motion_b,
                const CastOptions& options, const ContactsAt* slide, bool flipped)
         : a_(a), b_(b), motion_a_(motion_a), motion_b_(motion_b), options_(options), slide_(slide), flipped_(flipped) {
-        best_.time = std::min(options.early_out, options.duration);
+        best_.time = std::min(options.early_out, options.duration) + 0.0;
         const Aabb& bounds = b.shape.bounds();
         b_turns_ = motion_b.spin != glm::dvec3(0.0);
         pivot_ = b_turns_ || is_unbounded(b) ? motion_b.pivot : bounds.center();

@@ -264,7 +264,7 @@ std::optional<RayHit> raycast(const ShapeAtPose& shape, const Ray& ray) {
     RayCaster caster(along.ray);
     caster.cast(shape, 0);
     std::optional<RayHit> hit = caster.best();
-    if (hit) hit->t = std::min(std::scalbn(hit->t, -along.exponent), ray.max_t);
+    if (hit) hit->t = std::min(std::scalbn(hit->t, -along.exponent), ray.max_t) + 0.0;  // never −0
     return hit;
 }
 

@@ -88,7 +88,8 @@ void SurfaceContacts::ask(const NearTriangle& near, std::uint32_t index, EdgeRul
     // A sphere that touches an edge or a corner, along another direction than the face's, is not above the face.
     const bool is_beside = shape_.shape.kind() == Kind::sphere && warm == Warm::touching && !across_face &&
                            touch.feature_a.kind != FeatureKind::face;
-    if (has_face && !(is_beside && push != Push::always)) {
+    // A half-space pushes along its own normal alone: the triangles of the deepest corners have its points.
+    if (has_face && !is_half_space(shape_) && !(is_beside && push != Push::always)) {
         const bool front = only == 0 ? in_front : only > 0;
         gather_along_face(t, front, contact);
         const bool none = contact.points.count == 0;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <crofton/geometry/expansion.hpp>
 #include <crofton/geometry/plane_filter.hpp>
@@ -8,6 +7,7 @@
 #include <crofton/mesh/mesh_parts.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
+#include <cstddef>
 #include <glm/geometric.hpp>
 
 #include <crofton/mesh/ray_box.hpp>
@@ -103,15 +103,7 @@ double parameter(const Ray& ray, const Triangle& t) {
     const double margin = 1e-12 * std::max(std::abs(low), std::abs(high));
     const double least = low - margin, most = high + margin;
     const double kept = by_plane < least ? least : by_plane <= most ? by_plane : most;
-    return std::min(std::max(kept, 0.0), ray.max_t);
-}
-
-// The largest one that is not above x, but at most 2^1000, so that its reciprocal is a normal number. x is a valid
-// ray's largest component, whose square is not 0: above 2^-540.
-double power_of_two(double x) {
-    constexpr std::uint64_t kExponent = 0x7ff0000000000000u;
-    const double power = std::bit_cast<double>(std::bit_cast<std::uint64_t>(x) & kExponent);
-    return std::min(power, 0x1p1000);
+    return std::min(std::max(kept, 0.0), ray.max_t) + 0.0;  // never −0
 }
 
 // validate(ray) without the words.
@@ -122,53 +114,22 @@ bool is_valid(const Ray& ray) {
 
 RayAnswer trace(const Ray& ray, const mesh::MeshTree& mesh, bool any) {
     if (mesh.triangle_count() == 0) return {};
-    const RayQuery query = query_of(ray, mesh, any);
-    return trace(query, [&](std::uint32_t leaf, std::uint32_t lane) { return meets(ray, mesh, leaf, lane); });
+    return trace(numbers_of(ray), ray_mesh_of(mesh), any,
+                 [&](std::uint32_t leaf, std::uint32_t lane) { return meets(ray, mesh, leaf, lane); });
 }
 
 }  // namespace
 
-// Without a branch: what rays are like cannot be predicted.
-RayQuery query_of(const Ray& ray, const MeshTree& mesh, bool any) {
-    RayQuery query;
-    const glm::dvec3 size = glm::abs(ray.direction);
-    query.scale = power_of_two(std::max({size.x, size.y, size.z}));
-    // The reciprocal of a power of two: the exponents are those of 1, twice, less its own. A division takes longer.
-    const double per_scale =
-        std::bit_cast<double>(2u * std::bit_cast<std::uint64_t>(1.0) - std::bit_cast<std::uint64_t>(query.scale));
-    float along[3], magnitude[3];
-    double far = 0.0;
-    for (int i = 0; i < 3; ++i) {
-        query.origin[i] = ray.origin[i];
-        query.direction[i] = ray.direction[i];
-        query.start[i] = static_cast<float>(ray.origin[i]);
-        // A component of 0 would make 0 · infinity; this one bends the ray by less than its rounding.
-        const auto exact = static_cast<float>(ray.direction[i] * per_scale);
-        magnitude[i] = std::max(std::abs(exact), 1e-18f);
-        query.direction_f[i] = along[i] = std::copysign(magnitude[i], exact);
-        query.inverse[i] = 1.0f / along[i];
-        far = std::max(far, std::abs(ray.origin[i]));
-    }
-    const auto y_above_x = static_cast<std::uint32_t>(magnitude[1] > magnitude[0]);
-    const auto z_above_both = static_cast<std::uint32_t>(magnitude[2] > std::max(magnitude[0], magnitude[1]));
-    const std::uint32_t z = z_above_both * 2u + (1u - z_above_both) * y_above_x;
-    constexpr std::uint32_t kAfter[] = {0, 1, 2, 0, 1};
-    query.axis[2] = z;
-    for (std::uint32_t k = 0; k < 2; ++k) {
-        query.axis[k] = kAfter[z + 1 + k];
-        query.shear[k] = along[query.axis[k]] * query.inverse[z];
-    }
-    query.max_t = ray.max_t;
+static_assert(sizeof(Ray) == kRayNumbers * sizeof(double) && offsetof(Ray, direction) == 3 * sizeof(double) &&
+              offsetof(Ray, max_t) == 6 * sizeof(double));
+
+const double* numbers_of(const Ray& ray) {
+    return reinterpret_cast<const double*>(&ray);
+}
+
+RayMesh ray_mesh_of(const MeshTree& mesh) {
     const MeshParts& parts = mesh.parts();
-    // Of oriented boxes: the rounding of origin, direction, axes and projections, each at most 2^-24 relative, at any
-    // point the mesh can reach. The derivations of the others are with AlignedBoxes and candidates().
-    const double relative_error = parts.ray_nodes.empty() ? 4e-6 : kRayError;
-    query.error_bound = static_cast<float>(relative_error * (static_cast<double>(mesh.extent()) + far));
-    query.nodes = parts.ray_nodes.data();
-    query.mesh_nodes = parts.nodes.data();
-    query.leaves = parts.leaves.data();
-    query.any = any;
-    return query;
+    return {parts.ray_nodes.data(), parts.nodes.data(), parts.leaves.data(), static_cast<double>(mesh.extent())};
 }
 
 bool meets(const Ray& ray, const MeshTree& mesh, std::uint32_t leaf, std::uint32_t lane) {
@@ -214,7 +175,7 @@ std::optional<TriangleHit> raycast(const Ray& ray, const mesh::MeshTree& mesh) {
     if (!is_valid(ray)) return std::nullopt;
     const RayAnswer answer = trace(ray, mesh, false);
     if (!answer.hit) return std::nullopt;
-    return TriangleHit{answer.t, answer.triangle};
+    return TriangleHit{answer.t + 0.0, answer.triangle};
 }
 
 bool hits_any(const Ray& ray, const mesh::MeshTree& mesh) {

@@ -25,19 +25,14 @@ RayPacket packet_of(std::span<const Ray> rays) {
 }
 
 bool cast_packet(std::span<const Ray> rays, const MeshTree& mesh, std::optional<TriangleHit>* hits) {
-    const auto query = [&](std::uint32_t ray) { return query_of(rays[ray], mesh, false); };
     const auto exact = [&](std::uint32_t ray, std::uint32_t leaf, std::uint32_t lane) {
         return meets(rays[ray], mesh, leaf, lane);
     };
     RayAnswer answers[kRayPacketWidth];
-    const MeshParts& parts = mesh.parts();
-    if (!trace_packet(packet_of(rays),
-                      {parts.ray_nodes.data(), parts.leaves.data(), static_cast<double>(mesh.extent()), query, exact},
-                      answers))
-        return false;
+    if (!trace_packet(packet_of(rays), {ray_mesh_of(mesh), numbers_of(rays.front()), exact}, answers)) return false;
     for (std::size_t r = 0; r < rays.size(); ++r) {
         hits[r] = std::nullopt;
-        if (answers[r].hit) hits[r] = TriangleHit{answers[r].t, answers[r].triangle};
+        if (answers[r].hit) hits[r] = TriangleHit{answers[r].t + 0.0, answers[r].triangle};
     }
     return true;
 }

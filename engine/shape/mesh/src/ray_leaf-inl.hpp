@@ -40,7 +40,7 @@ struct FloatLanes {
 // add 4 u. These 22 u are within 2 e, with e the query's error bound, at least 12.5 u. With m the largest plane
 // coordinate, an edge's value is off by at most 8 m e + 8 e²
 // + 2^-21 m², and what underflows is below 1e-37. No triangle is hit before its nearest vertex along the ray, whose
-// parameter is off by less than e: 1 / direction_f[z] is at most 1.
+// parameter is off by less than e: 1 / direction[z] is at most 1.
 //
 // By the same bounds a ray certainly passes through a triangle whose edges have it on one side, and hits it between the
 // nearest vertex and the farthest: `met`, where that is not null.
@@ -80,7 +80,7 @@ HWY_INLINE std::uint32_t candidates(const mesh::MeshLeaf& leaf, const RayQuery& 
                                     bool& met) {
     const hn::CappedTag<float, mesh::kMeshLeafWidth> d;
     float beside[3];
-    for (int i = 0; i < 3; ++i) beside[i] = q.start[i] + along * q.direction_f[i];
+    for (int i = 0; i < 3; ++i) beside[i] = q.start[i] + along * q.direction[i];
     std::uint32_t apart = 0;
     for (std::size_t l = 0; l < mesh::kMeshLeafWidth; l += hn::Lanes(d)) {
         FloatLanes<hn::Vec<decltype(d)>> lanes;
@@ -203,16 +203,18 @@ HWY_INLINE HitBits triangle_hits(const mesh::MeshLeaf& leaf, const RayQuery& q, 
     const DD d;
     const hn::Rebind<float, DD> df;
     HitBits hits;
-    for (std::size_t l = 0; l < mesh::kMeshLeafWidth; l += hn::Lanes(d)) {
-        if ((wanted >> l & ((1u << hn::Lanes(d)) - 1u)) == 0) continue;
+    // Mostly one triangle is wanted, so one vector: which one is no branch.
+    for (std::uint32_t rest = wanted; rest != 0;) {
+        const std::size_t l = hwy::Num0BitsBelowLS1Bit_Nonzero32(rest) / hn::Lanes(d) * hn::Lanes(d);
+        rest &= ~(((1u << hn::Lanes(d)) - 1u) << l);
         RayLanes lanes;
         for (int i = 0; i < 3; ++i) {
-            lanes.direction[i] = hn::Set(d, q.direction[i]);
+            lanes.direction[i] = hn::Set(d, q.ray[3 + i]);
             for (int v = 0; v < 3; ++v)
-                lanes.p[v][i] = hn::Sub(hn::PromoteTo(d, hn::Load(df, leaf.vertex[v][i] + l)), hn::Set(d, q.origin[i]));
+                lanes.p[v][i] = hn::Sub(hn::PromoteTo(d, hn::Load(df, leaf.vertex[v][i] + l)), hn::Set(d, q.ray[i]));
         }
-        lanes.max_t = hn::Set(d, q.max_t);
-        lanes.ends = q.max_t < 1e300;
+        lanes.max_t = hn::Set(d, q.ray[6]);
+        lanes.ends = q.ray[6] < 1e300;
         const HitBits found = hits_of(d, lanes, l, t + l);
         hits.met |= found.met;
         hits.open |= found.open;
@@ -229,7 +231,7 @@ HWY_INLINE bool is_before(double t, std::uint32_t triangle, const RayAnswer& ans
 // box.
 HWY_INLINE bool trace_leaf(const RayQuery& q, std::uint32_t index, float along, float limit, ExactTest meets,
                            RayAnswer& answer) {
-    const mesh::MeshLeaf& leaf = q.leaves[index];
+    const mesh::MeshLeaf& leaf = q.mesh.leaves[index];
     bool met = false;
     const std::uint32_t wanted = candidates(leaf, q, along, limit, met);
     if (wanted == 0) return false;

@@ -12,25 +12,36 @@ namespace crofton::mesh {
 
 class MeshTree;
 
+// A ray's numbers as the caller gave them lie in a crofton::Ray one after the other: origin, direction, max_t.
+inline constexpr std::size_t kRayNumbers = 7;
+[[nodiscard]] const double* numbers_of(const Ray& ray);
+
+// What rays read of a mesh tree with triangles.
+struct RayMesh {
+    const BoxNode* nodes;  // null: rays go through mesh_nodes
+    const MeshNode* mesh_nodes;
+    const MeshLeaf* leaves;
+    double extent;
+};
+[[nodiscard]] RayMesh ray_mesh_of(const MeshTree& mesh);
+
+// A ray as its traversal needs it. Arrays of four have one element to spare.
 struct RayQuery {
-    double origin[3], direction[3], max_t;  // as the caller gave them
+    RayMesh mesh;
+    const double* ray;  // its numbers
     // In float, scaled by 1/scale, a power of two: no component is above 2 in size, or below 1e-18. Parameters along it
     // are `scale` times the caller's.
-    float start[3], direction_f[3], inverse[3];
+    alignas(16) float start[4], direction[4], inverse[4];
+    alignas(16) float near_start[4], far_start[4];  // of AlignedBoxes
     double scale;
     // The triangles' plane coordinates: axis[2] is that of the largest component, and shear[k] is
-    // direction_f[axis[k]] / direction_f[axis[2]].
+    // direction[axis[k]] / direction[axis[2]].
     std::uint32_t axis[3];
     float shear[2];
-    float error_bound;     // bound of the rounding at any point of the mesh
-    const BoxNode* nodes;  // null: the ray goes through mesh_nodes
-    const mesh::MeshNode* mesh_nodes;
-    const mesh::MeshLeaf* leaves;
+    float error_bound;  // bound of the rounding at any point of the mesh
     bool any;
 };
 
-// Requires a valid ray.
-[[nodiscard]] RayQuery query_of(const Ray& ray, const MeshTree& mesh, bool any);
 // Whether the ray meets the triangle in a leaf's lane, exactly.
 [[nodiscard]] bool meets(const Ray& ray, const MeshTree& mesh, std::uint32_t leaf, std::uint32_t lane);
 
@@ -42,7 +53,8 @@ struct RayAnswer {
     std::uint32_t triangle = 0;
     bool hit = false;
 };
-[[nodiscard]] RayAnswer trace(const RayQuery& query, ExactTest meets);
+// Of a valid ray, by its numbers: the nearest hit, or where any will do, `hit` alone.
+[[nodiscard]] RayAnswer trace(const double* ray, const RayMesh& mesh, bool any, ExactTest meets);
 
 inline constexpr std::size_t kRayPacketWidth = 16;
 
@@ -52,12 +64,10 @@ struct alignas(64) RayPacket {
     std::uint32_t count;  // 1 to kRayPacketWidth
 };
 
-// The hierarchy that a packet goes through; query_of(ray) of a lane; as ExactTest, of the ray in a lane.
+// The rays of a packet one by one; as ExactTest, of one of them.
 struct PacketMesh {
-    const BoxNode* nodes;
-    const MeshLeaf* leaves;
-    double extent;
-    FunctionRef<RayQuery(std::uint32_t ray)> query_of;
+    RayMesh mesh;
+    const double* rays;  // the numbers of all, one ray after the other
     FunctionRef<bool(std::uint32_t ray, std::uint32_t leaf, std::uint32_t lane)> meets;
 };
 

@@ -329,14 +329,14 @@ class Packet {
 
     // Puts the children on the stack, the farthest first. Returns the place of the nearest, or null.
     HWY_INLINE PacketStep* node(const PacketStep& step, PacketStep* const base) {
-        const BoxNode& node = mesh_.nodes[step.child];
+        const BoxNode& node = mesh_.mesh.nodes[step.child];
         PacketStep* top = base;
         for (std::uint32_t lanes = boxes_.lanes(node, far_); lanes != 0; lanes &= lanes - 1) {
             const auto lane = static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(lanes));
             float entry;
             const std::uint32_t rays = boxes_.rays(node, lane, limits_, entry) & step.rays;
             if (rays == 0) continue;
-            if (node.child[lane] & kMeshLeaf) fetch(mesh_.leaves[node.child[lane] & ~kMeshLeaf]);
+            if (node.child[lane] & kMeshLeaf) fetch(mesh_.mesh.leaves[node.child[lane] & ~kMeshLeaf]);
             PacketStep* place = top++;
             for (; place > base && place[-1].entry < entry; --place) *place = place[-1];
             *place = {node.child[lane], rays, entry};
@@ -360,13 +360,13 @@ class Packet {
             const auto exact = [&](std::uint32_t l, std::uint32_t lane) { return mesh_.meets(r, l, lane); };
             const std::uint32_t z = q.axis[2];
             // The entry is the least of all rays: a vertex tells where this one is beside the leaf.
-            const float along = (q.leaves[index].vertex[0][z][0] - q.start[z]) * q.inverse[z];
+            const float along = (q.mesh.leaves[index].vertex[0][z][0] - q.start[z]) * q.inverse[z];
             if (trace_leaf(q, index, along, limit_of(q, answers_[r].t), exact, answers_[r])) set_limit(r);
         }
     }
 
     HWY_INLINE void triangle_by_triangle(std::uint32_t index, std::uint32_t rays) {
-        const MeshLeaf& leaf = mesh_.leaves[index];
+        const MeshLeaf& leaf = mesh_.mesh.leaves[index];
         const std::uint32_t present = (1u << leaf.count) - 1u;
         for (std::uint32_t lanes = boxes_.lanes(leaf, far_) & present; lanes != 0; lanes &= lanes - 1) {
             const auto lane = static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(lanes));
@@ -388,7 +388,7 @@ class Packet {
     HWY_INLINE const RayQuery& query_of(std::uint32_t ray) {
         if ((made_ >> ray & 1u) == 0) {
             made_ |= 1u << ray;
-            queries_[ray] = mesh_.query_of(ray);
+            queries_[ray] = HWY_NAMESPACE::query_of(mesh_.rays + kRayNumbers * ray, mesh_.mesh, false);
         }
         return queries_[ray];
     }
@@ -416,7 +416,7 @@ class Packet {
 
 bool TracePacket(const RayPacket& packet, const PacketMesh& mesh, RayAnswer* answers) {
     PacketRays rays;
-    if (!rays.set(packet, mesh.extent)) return false;
+    if (!rays.set(packet, mesh.mesh.extent)) return false;
     Packet(packet, rays, mesh, answers).run();
     return true;
 }

@@ -20,7 +20,7 @@ class OrientedBoxes {
     static constexpr std::uint32_t kWidth = kMeshNodeWidth;
 
     HWY_INLINE explicit OrientedBoxes(const RayQuery& q) : query_(q) {}
-    HWY_INLINE const Node& node(std::uint32_t index) const { return query_.mesh_nodes[index]; }
+    HWY_INLINE const Node& node(std::uint32_t index) const { return query_.mesh.mesh_nodes[index]; }
 
     HWY_INLINE std::uint32_t entries(const Node& node, float limit, float* entry) const {
         const D d;
@@ -34,7 +34,7 @@ class OrientedBoxes {
                 for (int i = 0; i < 3; ++i) {
                     const V axis = hn::Load(d, node.axes[k][i] + l);
                     along = hn::MulAdd(axis, offset[i], along);
-                    speed = hn::MulAdd(axis, hn::Set(d, query_.direction_f[i]), speed);
+                    speed = hn::MulAdd(axis, hn::Set(d, query_.direction[i]), speed);
                 }
                 const V half = hn::Add(hn::Load(d, node.half[k] + l), hn::Set(d, query_.error_bound));
                 // Parallel to the slab: a tiny speed keeps the bounds finite and on the right sides.
@@ -60,10 +60,11 @@ class OrientedBoxes {
     const RayQuery& query_;
 };
 
-RayAnswer Trace(const RayQuery& q, ExactTest meets) {
-    const RayAnswer none{q.max_t, 0, false};
-    return q.nodes != nullptr ? trace_below<AlignedBoxes>(q, 0, none, meets)
-                              : trace_below<OrientedBoxes>(q, 0, none, meets);
+RayAnswer Trace(const double* ray, const RayMesh& mesh, bool any, ExactTest meets) {
+    const RayQuery q = query_of(ray, mesh, any);
+    const RayAnswer none{ray[6], 0, false};
+    return mesh.nodes != nullptr ? trace_below<AlignedBoxes>(q, 0, none, meets)
+                                 : trace_below<OrientedBoxes>(q, 0, none, meets);
 }
 
 }  // namespace crofton::mesh::HWY_NAMESPACE
@@ -74,8 +75,8 @@ namespace crofton::mesh {
 
 HWY_EXPORT(Trace);
 
-RayAnswer trace(const RayQuery& query, ExactTest meets) {
-    return HWY_DYNAMIC_DISPATCH(Trace)(query, meets);
+RayAnswer trace(const double* ray, const RayMesh& mesh, bool any, ExactTest meets) {
+    return HWY_DYNAMIC_DISPATCH(Trace)(ray, mesh, any, meets);
 }
 
 }  // namespace crofton::mesh

@@ -63,26 +63,29 @@ class Sweep {
         is_ball_ = is_segment_ && box_.half[1] == 0.0f;
     }
 
-    // The lanes whose boxes may be met up to `limit`, and where at the earliest: along the face normals of both.
+    // The lanes whose boxes may be met up to `limit`, and where at the earliest: along the face normals of both, and of
+    // a rounded shape along the way between about the nearest points.
     HWY_INLINE std::uint32_t nodes_met(const MeshNode& node, float limit, float* entry) const {
         if (kStill && is_segment_) return nodes_near_segment(node);
         const D d;
         std::uint32_t lanes = 0;
         for (std::size_t l = 0; l < kMeshNodeWidth; l += hn::Lanes(d)) {
-            const Lanes s = prepare(d, node, l, box_, error_ + radius_);
+            const Lanes s = prepare(d, node, l, box_, error_);
             Stretch<D> met{hn::Set(d, from_), hn::Set(d, limit)};
             for (int i = 0; i < 3; ++i) {
-                const V reach = hn::MulAdd(
-                    s.half[0], s.magnitude[i][0],
-                    hn::MulAdd(s.half[1], s.magnitude[i][1],
-                               hn::MulAdd(s.half[2], s.magnitude[i][2], hn::Add(hn::Set(d, box_.half[i]), s.error))));
+                const V reach =
+                    hn::MulAdd(s.half[0], s.magnitude[i][0],
+                               hn::MulAdd(s.half[1], s.magnitude[i][1],
+                                          hn::MulAdd(s.half[2], s.magnitude[i][2],
+                                                     hn::Add(hn::Set(d, box_.half[i] + radius_), s.error))));
                 if constexpr (kStill)
                     met.cut_still(hn::Sub(s.t[i], reach), hn::Add(s.t[i], reach));
                 else
                     met.cut(hn::Sub(s.t[i], reach), hn::Add(s.t[i], reach), hn::Set(d, per_speed_[i]));
             }
             for (int j = 0; j < 3; ++j) {
-                V reach = hn::Add(s.half[j], s.error), at = hn::Zero(d), speed = hn::Zero(d);
+                V reach = hn::Add(s.half[j], hn::Add(s.error, hn::Set(d, radius_))), at = hn::Zero(d),
+                  speed = hn::Zero(d);
                 for (int i = 0; i < 3; ++i) {
                     reach = hn::MulAdd(hn::Set(d, box_.half[i]), s.magnitude[i][j], reach);
                     at = hn::MulAdd(s.t[i], s.r[i][j], at);
@@ -93,6 +96,8 @@ class Sweep {
                 else
                     met.cut(hn::Sub(at, reach), hn::Add(at, reach), per_speed_of(d, speed, hn::Set(d, 1e-12f)));
             }
+            if constexpr (!kStill)
+                if (rounded_ && !hn::AllTrue(d, hn::Gt(met.first, met.last))) cut_from_box(d, s, met);
             lanes |= finish(d, met, entry + l) << l;
         }
         return lanes & ((1u << node.count) - 1u);
@@ -248,7 +253,38 @@ class Sweep {
         cut_along(d, p, axis, met);
     }
 
-    // An axis that is too short or too long for its products to be floats parts nothing.
+    // The way to x from the nearest point of a node's box, whose center is at 0.
+    static HWY_INLINE void way_from_box(const Lanes& s, const V* x, V* way) {
+        V out[3];
+        for (int j = 0; j < 3; ++j) {
+            const V at = hn::MulAdd(x[0], s.r[0][j], hn::MulAdd(x[1], s.r[1][j], hn::Mul(x[2], s.r[2][j])));
+            out[j] = hn::Sub(at, hn::Min(hn::Max(at, hn::Neg(s.half[j])), s.half[j]));
+        }
+        for (int i = 0; i < 3; ++i)
+            way[i] = hn::MulAdd(out[0], s.r[i][0], hn::MulAdd(out[1], s.r[i][1], hn::Mul(out[2], s.r[i][2])));
+    }
+
+    // Along the way between about the nearest points of a node's box and of the core, where that is at met.first.
+    HWY_INLINE void cut_from_box(D d, const Lanes& s, Stretch<D>& met) const {
+        V x[3], axis[3], at = hn::Zero(d), reach = hn::Zero(d);
+        for (int k = 0; k < 3; ++k) x[k] = hn::MulSub(met.first, hn::Set(d, speed_[k]), s.t[k]);
+        way_from_box(s, x, axis);
+        if (!is_ball_) {
+            for (int k = 0; k < 3; ++k) {
+                const V half = hn::Set(d, box_.half[k]);
+                x[k] = hn::Sub(x[k], hn::Min(hn::Max(axis[k], hn::Neg(half)), half));
+            }
+            way_from_box(s, x, axis);
+        }
+        for (int k = 0; k < 3; ++k) {
+            const V turned =
+                hn::MulAdd(axis[0], s.r[0][k], hn::MulAdd(axis[1], s.r[1][k], hn::Mul(axis[2], s.r[2][k])));
+            at = hn::MulAdd(axis[k], s.t[k], at);
+            reach = hn::MulAdd(s.half[k], hn::Abs(turned), reach);
+        }
+        cut_along(d, hn::Sub(at, reach), hn::Add(at, reach), axis, s.error, met);
+    }
+
     HWY_INLINE void cut_along(DT d, const VT (&p)[3][3], const VT* axis, Stretch<DT>& met) const {
         VT low, high;
         for (int v = 0; v < 3; ++v) {
@@ -256,26 +292,33 @@ class Sweep {
             low = v == 0 ? at : hn::Min(low, at);
             high = v == 0 ? at : hn::Max(high, at);
         }
-        VT length = hn::Zero(d), squared = hn::Zero(d), reach = hn::Zero(d), speed = hn::Zero(d);
+        cut_along(d, low, high, axis, hn::Set(d, error_), met);
+    }
+
+    // Of what reaches from `low` to `high` along the axis. An axis that is too short or too long for its products to be
+    // floats parts nothing.
+    template <class Tag, class Vec>
+    HWY_INLINE void cut_along(Tag d, Vec low, Vec high, const Vec* axis, Vec error, Stretch<Tag>& met) const {
+        Vec length = hn::Zero(d), squared = hn::Zero(d), reach = hn::Zero(d), speed = hn::Zero(d);
         for (int k = 0; k < 3; ++k) {
-            const VT size = hn::Abs(axis[k]);
+            const Vec size = hn::Abs(axis[k]);
             length = hn::Add(length, size);
             squared = hn::MulAdd(size, size, squared);
             reach = hn::MulAdd(size, hn::Set(d, box_.half[k]), reach);
             speed = hn::MulAdd(axis[k], hn::Set(d, speed_[k]), speed);
         }
-        reach = hn::MulAdd(length, hn::Set(d, error_), reach);
+        reach = hn::MulAdd(length, error, reach);
         if (rounded_) {
-            const VT root = hn::Mul(hn::Sqrt(squared), hn::Set(d, 1.0f + 0x1p-20f));
-            const VT euclidean = hn::IfThenElse(hn::Gt(squared, hn::Set(d, 1e-30f)), root, length);
+            const Vec root = hn::Mul(hn::Sqrt(squared), hn::Set(d, 1.0f + 0x1p-20f));
+            const Vec euclidean = hn::IfThenElse(hn::Gt(squared, hn::Set(d, 1e-30f)), root, length);
             reach = hn::MulAdd(euclidean, hn::Set(d, radius_), reach);
         }
-        const VT far = hn::Set(d, 1e37f);
+        const Vec far = hn::Set(d, 1e37f);
         const auto fit = hn::And(hn::Gt(length, hn::Set(d, 1e-24f)), hn::Lt(length, hn::Set(d, 1e18f)));
         low = hn::IfThenElse(fit, hn::Sub(low, reach), hn::Neg(far));
         high = hn::IfThenElse(fit, hn::Add(high, reach), far);
         if constexpr (kStill) return met.cut_still(low, high);
-        const VT least = hn::MulAdd(length, hn::Set(d, 1e-12f), hn::Set(d, 1e-36f));
+        const Vec least = hn::MulAdd(length, hn::Set(d, 1e-12f), hn::Set(d, 1e-36f));
         met.cut(low, high, hn::IfThenElse(fit, per_speed_of(d, speed, least), hn::Set(d, 1.0f)));
     }
 

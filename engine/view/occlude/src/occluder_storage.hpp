@@ -19,7 +19,7 @@ struct Occluder {
 };
 
 struct OccluderSet::Data {
-    using Occluders = PagedVector<Occluder, 512>;
+    using Occluders = PagedVector<Occluder, 256>;
     Vector<Shape> shapes;
     Vector<std::uint32_t> shape_uses;  // occluders of each shape; kNone: the shape is removed
     Occluders occluders;

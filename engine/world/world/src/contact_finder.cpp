@@ -201,14 +201,15 @@ void ContactFinder::touch_trees(const Object& a, const PosedTree& tree_a, const 
 }
 
 void ContactFinder::find_contacts(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene,
-                                  Shapes& shapes, const ObjectShapes& shapes_of, Executor& executor) {
-    const auto have_shapes = [&](const IdPair& pair) {
-        return shapes_of.has(pair.first) && shapes_of.has(pair.second);
+                                  Shapes& shapes, const ObjectShapes& shapes_of, ShapeToucher touch_shape,
+                                  Executor& executor) {
+    const auto shape_count = [&](const IdPair& pair) {
+        return int{shapes_of.has(pair.first)} + int{shapes_of.has(pair.second)};
     };
     const auto is_mesh = [&](std::uint32_t object) { return shapes.mesh_tree_of(table.objects[object]) != nullptr; };
     shapes.begin();
     for (const IdPair& pair : touched_) {
-        if ((!is_mesh(pair.first) && !is_mesh(pair.second)) || have_shapes(pair)) continue;
+        if ((!is_mesh(pair.first) && !is_mesh(pair.second)) || shape_count(pair) > 0) continue;
         for (const std::uint32_t object : {pair.first, pair.second}) shapes.prepare(table, index, scene, object);
     }
     shapes.build(scene, executor);
@@ -227,7 +228,13 @@ void ContactFinder::find_contacts(const ObjectTable& table, const SpatialIndex& 
             touch.worker = w;
             touch.first_point = static_cast<std::uint32_t>(worker.points.size());
             touch.first_triangle = static_cast<std::uint32_t>(worker.triangles.size());
-            if (have_shapes(pair)) continue;
+            if (const int count = shape_count(pair); count > 0) {
+                if (count == 2) continue;
+                touch_shape(pair, worker.of_shape);
+                worker.of_shape.write_to(touch, worker.points);
+                touch.point_count = static_cast<std::uint32_t>(worker.points.size()) - touch.first_point;
+                continue;
+            }
             if (!is_mesh(pair.first) && !is_mesh(pair.second)) {
                 touch_bounds(table, index, pair, worker, touch);
                 continue;
@@ -367,7 +374,7 @@ void ContactFinder::replace_contacts(const ObjectTable& table, std::span<const I
 
 Result<void> ContactFinder::update(const ObjectTable& table, SpatialIndex& index, const scene::Scene& scene,
                                    Shapes& shapes, const ObjectShapes& shapes_of, const PairChanges& changes,
-                                   Executor& executor) {
+                                   ShapeToucher touch_shape, Executor& executor) {
     note_colliders(table, index, scene, shapes_of, changes);
     const auto has_sphere = [&](std::uint32_t a, std::uint32_t b) {
         return table.objects[a].kind == BoundKind::sphere || table.objects[b].kind == BoundKind::sphere;
@@ -385,7 +392,7 @@ Result<void> ContactFinder::update(const ObjectTable& table, SpatialIndex& index
     if (!options_.contacts) return found;
     const auto touched = changes.all_contacts ? broadphase_.pairs() : broadphase_.tested();
     touched_.assign(touched.begin(), touched.end());
-    find_contacts(table, index, scene, shapes, shapes_of, executor);
+    find_contacts(table, index, scene, shapes, shapes_of, touch_shape, executor);
     replace_contacts(table, broadphase_.ended());
     return found;
 }

@@ -2,6 +2,7 @@
 // Finds the objects that touch, and where: first all pairs of boxes, then the shapes of each pair.
 #pragma once
 #include <crofton/collide/broadphase.hpp>
+#include <crofton/convex/query.hpp>
 #include <crofton/core/growing_vector.hpp>
 #include <crofton/core/sorted_edits.hpp>
 #include <crofton/world/world.hpp>
@@ -24,6 +25,26 @@ struct Touch {
     std::uint32_t worker = 0;
     std::uint32_t first_point = 0, point_count = 0;
     std::uint32_t first_triangle = 0, triangle_count = 0;
+};
+
+// How two objects touch of which one has a shape: the shape, and the other's box, sphere or mesh.
+struct ShapeTouch {
+    convex::Manifolds found;                             // keeps its memory
+    const convex::Manifold* deepest = nullptr;           // of these; nullptr: none
+    mesh::Containment inside = mesh::Containment::none;  // without a manifold: the shape is inside the mesh
+
+    [[nodiscard]] bool hit() const { return deepest != nullptr || inside != mesh::Containment::none; }
+    // Sets these of a Touch or the like, and adds its points.
+    template <class T>
+    void write_to(T& touch, Vector<collide::ContactPoint>& points) const {
+        touch.hit = hit();
+        touch.inside = inside;
+        if (deepest == nullptr) return;
+        touch.normal = deepest->normal;
+        touch.depth = deepest->depth;
+        for (int i = 0; i < deepest->count; ++i)
+            points.push_back({deepest->points[i].position, deepest->points[i].depth});
+    }
 };
 
 // What the shapes of a pair gave, of which the second stands in no table.
@@ -70,11 +91,13 @@ class ContactFinder {
   public:
     explicit ContactFinder(const WorldOptions& options);
 
+    using ShapeToucher = FunctionRef<void(const IdPair& pair, ShapeTouch& touch)>;
     // After the updates of these. Looks at the index's moved_items() and member_items() and at what `changes` tells of;
-    // other pairs and contacts stay as they are. Pairs of two shapes are left to `shapes_of`. Error: as
-    // Broadphase::update.
+    // other pairs and contacts stay as they are. Asks `touch_shape` for pairs of which one has a shape; pairs of two
+    // shapes are left to ShapeContacts. Error: as Broadphase::update.
     Result<void> update(const ObjectTable& table, SpatialIndex& index, const scene::Scene& scene, Shapes& shapes,
-                        const ObjectShapes& shapes_of, const PairChanges& changes, Executor& executor);
+                        const ObjectShapes& shapes_of, const PairChanges& changes, ShapeToucher touch_shape,
+                        Executor& executor);
     // Nothing has changed since the update before.
     void stay();
     // After an update: gives back what looking at many pairs has taken. touched() is empty then.
@@ -104,6 +127,7 @@ class ContactFinder {
     struct Worker {
         Vector<collide::ContactPoint> points;
         Vector<mesh::MeshContact> triangles, found;
+        ShapeTouch of_shape;
     };
     struct IsBefore {
         bool operator()(const ObjectPair& a, const ObjectPair& b) const { return is_before(a, b); }
@@ -120,7 +144,7 @@ class ContactFinder {
     void take_own_boxes(const SpatialIndex& index);
     void note_pairs(const ObjectTable& table, const PairChanges& changes);
     void find_contacts(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene, Shapes& shapes,
-                       const ObjectShapes& shapes_of, Executor& executor);
+                       const ObjectShapes& shapes_of, ShapeToucher touch_shape, Executor& executor);
     void touch_bounds(const ObjectTable& table, const SpatialIndex& index, const IdPair& pair, Worker& worker,
                       Touch& touch) const;
     void touch_trees(const Object& a, const PosedTree& tree_a, const Object& b, const PosedTree& tree_b, Worker& worker,

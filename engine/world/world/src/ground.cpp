@@ -91,10 +91,12 @@ void Ground::merge_pairs(std::span<const ObjectPair> found) {
     std::merge(found.begin(), found.end(), pairs_.begin(), pairs_.end(), all_pairs_.begin(), is_before);
 }
 
-void Ground::add_contact(const ObjectPair& pair, const convex::Manifold& manifold) {
-    const auto first = static_cast<std::uint32_t>(points_.size());
-    for (int i = 0; i < manifold.count; ++i) points_.push_back({manifold.points[i].position, manifold.points[i].depth});
-    touching_.push_back({pair, manifold.normal, manifold.depth, first, static_cast<std::uint32_t>(manifold.count)});
+void Ground::add_contact(const ObjectPair& pair, const ShapeTouch& touch) {
+    Touching& touching = touching_.emplace_back();
+    touching.pair = pair;
+    touching.first_point = static_cast<std::uint32_t>(points_.size());
+    touch.write_to(touching, points_);
+    touching.point_count = static_cast<std::uint32_t>(points_.size()) - touching.first_point;
 }
 
 void Ground::merge_contacts(std::span<const Contact> found) {
@@ -118,6 +120,7 @@ void Ground::merge_contacts(std::span<const Contact> found) {
         contact.phase = stayed ? ContactPhase::stayed : ContactPhase::began;
         contact.normal = touch.normal;
         contact.depth = touch.depth;
+        contact.inside = touch.inside;
         contact.points = {points_.data() + touch.first_point, touch.point_count};
     }
     for (; old < before_.size(); ++old) add_ended(before_[old]);
@@ -173,18 +176,12 @@ void World::State::update_ground() {
     ground.merge_pairs(finder.pairs());
 }
 
-// Of a pair of which one has no shape its mesh's triangles, its sphere or its box touch the ground.
 void World::State::update_ground_contacts() {
     for (const ObjectPair& pair : ground.own_pairs()) {
         const std::uint32_t a = pair.first.object.index, b = pair.second.object.index;
         if (object_shapes.has(a) && object_shapes.has(b)) continue;
-        const bool swapped = object_shapes.has(b);
-        const std::uint32_t base = swapped ? b : a, other = swapped ? a : b;
-        const world::QueryShape level = query_shape_of(base), thing = query_shape_of(other);
-        if (!level.pose || !thing.pose) continue;
-        const convex::Manifold manifold = swapped ? convex::contact_manifold(thing.placed(), level.placed())
-                                                  : convex::contact_manifold(level.placed(), thing.placed());
-        if (manifold.count > 0) ground.add_contact(pair, manifold);
+        touch_shape({a, b}, ground.shape_touch);
+        if (ground.shape_touch.hit()) ground.add_contact(pair, ground.shape_touch);
     }
     ground.merge_contacts(finder.contacts());
 }

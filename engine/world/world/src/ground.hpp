@@ -6,6 +6,8 @@
 #include <crofton/core/memory.hpp>
 #include <crofton/world/answers.hpp>
 
+#include "contact_finder.hpp"
+
 namespace crofton::world {
 
 // The half-spaces of a shape in the world, with unit normals, and a box around all else.
@@ -28,6 +30,8 @@ class Ground {
         glm::dvec3 normal{0.0};
         double depth = 0.0;
         std::uint32_t first_point = 0, point_count = 0;
+        mesh::Containment inside = mesh::Containment::none;
+        bool hit = false;
     };
 
     void start();
@@ -35,7 +39,7 @@ class Ground {
     // All pairs in order, with the finder's.
     void merge_pairs(std::span<const ObjectPair> found);
     [[nodiscard]] std::span<const ObjectPair> own_pairs() const { return pairs_; }
-    void add_contact(const ObjectPair& pair, const convex::Manifold& manifold);
+    void add_contact(const ObjectPair& pair, const ShapeTouch& touch);
     void merge_contacts(std::span<const Contact> found);
     void stay();
 
@@ -48,6 +52,8 @@ class Ground {
         was_used_ = is_used_;
         is_used_ = used || !touching_.empty() || !before_.empty();
     }
+
+    ShapeTouch shape_touch;  // scratch
 
   private:
     bool was_used_ = false;

@@ -100,8 +100,8 @@ class Occluders {
     occlude::OccluderSet set_;
     occlude::OccluderCandidates candidates_;
     Vector<Mesh> meshes_;
-    PagedVector<Placed, 1024> placed_;  // by occluder
-    Vector<Holder> holders_;            // by object
+    PagedVector<Placed, 256> placed_;  // by occluder
+    Vector<Holder> holders_;           // by object
     Vector<scene::MeshId> changed_meshes_;
     Vector<std::uint32_t> changed_objects_;
     Vector<RegionShapes> region_shapes_;

@@ -110,6 +110,20 @@ std::optional<glm::dvec3> World::State::point_inside(const convex::ShapeAtPose& 
     return inside;
 }
 
+void World::State::touch_shape(const IdPair& pair, world::ShapeTouch& touch) const {
+    touch.deepest = nullptr;
+    touch.inside = mesh::Containment::none;
+    const world::QueryShape a = query_shape_of(pair.first), b = query_shape_of(pair.second);
+    if (!a.pose || !b.pose) return;
+    convex::contact_manifolds(a.placed(), b.placed(), {}, touch.found);
+    for (const convex::Manifold& manifold : touch.found.all())
+        if (touch.deepest == nullptr || manifold.depth > touch.deepest->depth) touch.deepest = &manifold;
+    if (touch.deepest != nullptr) return;
+    const bool shape_first = has_own_shape(pair.first);
+    if (point_inside(shape_first ? a.placed() : b.placed(), shape_first ? pair.second : pair.first))
+        touch.inside = shape_first ? mesh::Containment::a_inside_b : mesh::Containment::b_inside_a;
+}
+
 bool World::State::overlaps(const convex::ShapeAtPose& probe, std::uint32_t id) const {
     const world::QueryShape object = query_shape_of(id);
     return object.pose && (convex::intersects(probe, object.placed()) || point_inside(probe, id));

@@ -197,6 +197,10 @@ void World::State::add_region_pairs_of(std::uint32_t id) {
 }
 
 void World::State::touch_in_region(std::uint32_t id, std::uint32_t other, world::BoundTouch& touch) {
+    if (object_shapes.has(id) || regions.has_shape(other)) {
+        touch_shape({id, other}, region_pairs.shape_touch);
+        return region_pairs.shape_touch.write_to(touch, touch.points);
+    }
     const world::Object& object = table.objects[id];
     const world::Object of_region = regions.object(other);
     const Obb other_box = regions.box(other);

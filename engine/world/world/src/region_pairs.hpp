@@ -55,6 +55,7 @@ class RegionPairs {
 
     Vector<std::uint32_t> changed;        // scratch: own objects whose pairs are found again
     BoundTouch touch;                     // scratch
+    ShapeTouch shape_touch;               // scratch
     Vector<IdPair> all_added, all_ended;  // scratch: of the World's own as well
     bool lost = false;                    // the update before found too many pairs
 

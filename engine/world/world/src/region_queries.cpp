@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Queries of attached regions: searches the tree of regions first, then the trees of those that may answer.
+#include <hwy/cache_control.h>
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -12,6 +13,15 @@
 #include "regions.hpp"
 
 namespace crofton::world {
+
+namespace {
+
+void prefetch(const Attachment& region) {
+    for (std::size_t at = 0; at < sizeof(Attachment); at += 64)
+        hwy::Prefetch(reinterpret_cast<const char*>(&region) + at);
+}
+
+}  // namespace
 
 void Regions::visit_along(const Ray& ray, std::uint32_t layers, collide::RayVisitor visit) const {
     if (tree_.item_count() == 0) return;
@@ -86,28 +96,35 @@ void Regions::list_seen(const RegionQuery& query, WholeView& result) const {
     cull::find_visible(tree_, query.view, result.regions,
                        {.mode = cull::CullMode::conservative, .order = cull::ResultOrder::tree});
     result.seen.clear();
-    const auto add = [&](std::uint32_t slot) {
+    const auto add = [&](std::uint32_t slot, bool is_inside) {
         const Attachment& region = attachments_[slot];
         if (query.limits != nullptr && !may_be_within(*query.limits, region)) return;
         if (query.buffer != nullptr && !query.list_occluded && query.buffer->hides(region.bounds)) return;
-        result.seen.push_back(&region);
+        result.seen.push_back({&region, is_inside});
     };
+    const std::span<const boxtree::ItemId> items = result.regions.ids();
+    const std::size_t inside_count = result.regions.inside_count();
     if (query.order == cull::ResultOrder::tree) {
-        for (const boxtree::ItemId item : result.regions.ids()) add(slot_of_item_[item]);
+        for (std::size_t i = 0; i < items.size(); ++i) add(slot_of_item_[items[i]], i < inside_count);
         return;
     }
     result.pages.assign((page_slots_.size() + 63) / 64, 0);
-    for (const boxtree::ItemId item : result.regions.ids()) {
-        const std::uint32_t page = (attachments_[slot_of_item_[item]].first - kFirstRegionIndex) / kPage;
-        result.pages[page / 64] |= std::uint64_t{1} << page % 64;
+    result.inside_pages.assign(result.pages.size(), 0);
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        const std::uint32_t page = (attachments_[slot_of_item_[items[i]]].first - kFirstRegionIndex) / kPage;
+        const std::uint64_t bit = std::uint64_t{1} << page % 64;
+        result.pages[page / 64] |= bit;
+        if (i < inside_count) result.inside_pages[page / 64] |= bit;
     }
     for (std::size_t w = 0; w < result.pages.size(); ++w)
         for (std::uint64_t rest = result.pages[w]; rest != 0; rest &= rest - 1)
-            add(page_slots_[64 * w + static_cast<std::size_t>(std::countr_zero(rest))]);
+            add(page_slots_[64 * w + static_cast<std::size_t>(std::countr_zero(rest))],
+                (result.inside_pages[w] & rest & (~rest + 1)) != 0);
 }
 
 void Regions::find_visible(const RegionQuery& query, WholeView& result) const {
     constexpr std::size_t kMostItems = std::size_t{1} << 20;  // asked at once, unless one region has more
+    constexpr std::size_t kAhead = 8;
     result.query.start(query.view);
     list_seen(query, result);
     WholeView::Batch& batch = result.batch;
@@ -116,8 +133,10 @@ void Regions::find_visible(const RegionQuery& query, WholeView& result) const {
         add_visible(query, result);
         batch.clear();
     };
-    for (const Attachment* const region : result.seen) {
-        const std::uint32_t planes = result.query.planes_that_may_cut(region->bounds);
+    for (std::size_t i = 0; i < result.seen.size(); ++i) {
+        if (i + kAhead < result.seen.size()) prefetch(*result.seen[i + kAhead].region);
+        const auto& [region, is_inside] = result.seen[i];
+        const std::uint32_t planes = is_inside ? 0 : result.query.planes_that_may_cut(region->bounds);
         const bool is_whole = planes == 0 && region->shown.empty() && !query.asks_each() &&
                               (region->common_layers & query.view.layer_mask) != 0;
         batch.parts.push_back({region, is_whole});

@@ -52,8 +52,13 @@ struct WholeView {
     cull::MovedTreesQuery query;
     cull::VisibleSet regions;
     occlude::VisibleSet not_hidden;
-    Vector<std::uint64_t> pages;     // of regions that the view sees
-    Vector<const Attachment*> seen;  // these regions, in the order of the answer
+    // A region that the view sees.
+    struct Seen {
+        const Attachment* region = nullptr;
+        bool is_inside = false;  // as a whole; false may also mean unknown
+    };
+    Vector<std::uint64_t> pages, inside_pages;  // of regions that the view sees
+    Vector<Seen> seen;                          // these regions, in the order of the answer
     Batch batch;
     AnswerList<std::uint32_t> straddling;  // in tree order, until the end
     AnswerList<std::uint32_t> found;       // in one region

@@ -255,7 +255,9 @@ Result<void> World::update(Executor& executor) {
     const auto start = std::chrono::steady_clock::now();
     if (s.options.pairs && changed) {
         const world::TraceZone part(trace, "update: pairs and contacts");
-        found = s.finder.update(s.table, s.index, s.scene, s.shapes, s.object_shapes, s.pair_changes, executor);
+        const auto touch_shape = [&](const IdPair& pair, world::ShapeTouch& touch) { s.touch_shape(pair, touch); };
+        found = s.finder.update(s.table, s.index, s.scene, s.shapes, s.object_shapes, s.pair_changes, touch_shape,
+                                executor);
         s.ground.set_used(!s.object_shapes.unbounded().empty());
         if (s.ground.is_used()) s.update_ground();
         if (s.options.contacts && s.ground.is_used()) s.update_ground_contacts();

@@ -140,6 +140,8 @@ struct World::State {
     void list_changed_near_regions();
     void add_region_pairs_of(std::uint32_t object);
     [[nodiscard]] Obb region_collider_box(std::uint32_t other, const Obb& box) const;
+    // How two objects touch of which one has a shape.
+    void touch_shape(const IdPair& pair, world::ShapeTouch& touch) const;
     // How one of the World's own and an object of a region touch, of which one has no shape.
     void touch_in_region(std::uint32_t object, std::uint32_t other, world::BoundTouch& touch);
     void update_shape_contacts(Executor& executor);

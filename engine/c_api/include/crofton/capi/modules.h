@@ -76,6 +76,13 @@ CROFTON_API crofton_status crofton_clustered_mesh_destroy(crofton_clustered_mesh
 /* Returns the clusters; valid as long as the clustered mesh. */
 CROFTON_API crofton_status crofton_clustered_mesh_get(const crofton_clustered_mesh* clustered,
                                                       crofton_clusters* clusters);
+/* Writes bytes from which crofton_clustered_mesh_deserialise makes an equal object without cutting again, on machines
+ * of the same byte order. Writes none if `capacity` is less than *count, which is set to how many there are. */
+CROFTON_API crofton_status crofton_clustered_mesh_serialise(const crofton_clustered_mesh* clustered, uint8_t* bytes,
+                                                            size_t capacity, size_t* count);
+/* CROFTON_PARSE: the bytes are cut off, or numbers are out of range. Make sure that they belong to the mesh. */
+CROFTON_API crofton_status crofton_clustered_mesh_deserialise(const uint8_t* bytes, size_t count,
+                                                              crofton_clustered_mesh** clustered);
 /* Writes a mesh's `index_count` indices to `permuted` in the order of its clusters, so that each cluster is one range
  * of an index buffer. The arrays must not overlap. */
 CROFTON_API crofton_status crofton_permute_triangles(const crofton_clusters* clusters, const uint32_t* indices,
@@ -228,7 +235,7 @@ typedef struct crofton_shape_description {
     size_t point_count;
     uint32_t max_vertices; /* hulls: 4 to 256; 0: 256. A hull with more is replaced by a larger one that contains it */
     float face_tolerance;  /* hulls: triangles within this of a plane, relative to the size, are one face; 0: 1e-5 */
-    const crofton_mesh* mesh; /* meshes: the triangles, as a surface */
+    const crofton_mesh* mesh; /* meshes: the triangles, as a surface; no coordinate beyond 1e12 */
     const crofton_height_field* height_field;
     uint32_t front_only; /* meshes, height fields; 1: contacts push to the front only, for fields up, and casts from
                             behind pass */

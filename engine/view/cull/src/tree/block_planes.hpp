@@ -15,13 +15,19 @@ struct BlockPlane {
     std::int32_t offset, error_bound;
 };
 
+inline std::uint32_t all_planes(const KernelView& view) {
+    return (1u << view.plane_count) - 1;
+}
+
 // For the blocks of a tree, whose root node has this origin and radius. The offset's seven roundings of 2^-53 of
 // Σ|origin − view| + |plane offset| each, as in local_plane, for any block whose origin lies in the root's bounds. It
 // may lie farther out by less than the block's L1 radius: the share of that in `rounding` has room for it.
-inline void bring_before(const double* root_origin, float root_l1_radius, KernelView& view) {
+inline void bring_before(const double* root_origin, float root_l1_radius, std::uint32_t planes, KernelView& view) {
     const LocalOrigin at = local_origin(view, root_origin, root_l1_radius);
-    for (std::uint32_t i = 0; i < view.plane_count; ++i)
+    for (std::uint32_t rest = planes; rest; rest &= rest - 1) {
+        const auto i = static_cast<std::uint32_t>(std::countr_zero(rest));
         view.far[i] = 0x1p-49 * (at.size + at.l1_radius + std::fabs(view.planes[i].offset));
+    }
 }
 
 inline constexpr double kMostOffset = 1.2e9;

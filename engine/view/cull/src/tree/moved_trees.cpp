@@ -59,7 +59,7 @@ struct MovedTreesQuery::State {
     std::array<std::size_t, kMost + 1> first_word;
     std::array<const MovedTree*, kMost> trees;
 
-    void bring_before_tree(std::size_t t, const MovedTree& tree);
+    void bring_before_tree(std::size_t t, const Asked& asked);
     void add(bool is_inside, std::uint32_t id, std::uint32_t* inside_ids, std::uint32_t* straddling_ids, Found& found);
     Found ask(std::span<const Asked> asked, CullMode mode, std::span<const std::uint32_t> first_ids,
               std::uint32_t* inside_ids, std::uint32_t* straddling_ids);
@@ -100,7 +100,8 @@ std::uint32_t MovedTreesQuery::planes_that_may_cut(const Obb& box) const {
 
 // A moved tree is met by the view moved back, with wider error bounds: a plane's value is off by |normal| ≤ 1.001 for
 // each component times what the point is off by.
-void MovedTreesQuery::State::bring_before_tree(std::size_t t, const MovedTree& tree) {
+void MovedTreesQuery::State::bring_before_tree(std::size_t t, const Asked& asked) {
+    const MovedTree& tree = *asked.tree;
     KernelView& moved = views[t];
     if (t >= views_made) {
         views_made = t + 1;
@@ -111,9 +112,9 @@ void MovedTreesQuery::State::bring_before_tree(std::size_t t, const MovedTree& t
     }
     const glm::dvec3 origin = tree.move.back(view->frustum.origin);
     for (int j = 0; j < 3; ++j) moved.origin[j] = origin[j];
-    bring_before(tree.root_origin, tree.root_l1_radius, moved);
     const double rounding = tree.move.rounding(view->frustum.origin);
-    for (std::uint32_t i = 0; i < moved.plane_count; ++i) moved.far[i] += rounding;
+    bring_before(tree.root_origin, tree.root_l1_radius, asked.planes, moved);
+    for (std::uint32_t rest = asked.planes; rest; rest &= rest - 1) moved.far[std::countr_zero(rest)] += rounding;
 }
 
 void MovedTreesQuery::State::add(bool is_inside, std::uint32_t id, std::uint32_t* inside_ids,
@@ -132,7 +133,7 @@ MovedTreesQuery::State::Found MovedTreesQuery::State::ask(std::span<const Asked>
     std::size_t items = 0, blocks = 0;
     for (std::size_t t = 0; t < asked.size(); ++t) {
         const MovedTree& tree = *asked[t].tree;
-        bring_before_tree(t, tree);
+        bring_before_tree(t, asked[t]);
         inputs[t] = {.nodes = tree.arrays.nodes,
                      .leaves = tree.arrays.leaves,
                      .ranges = tree.arrays.ranges,

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <numbers>
+#include <span>
 #include <string>
 
 #include "choosing/candidate_storage.hpp"
@@ -210,34 +211,40 @@ bool may_use(const EyeLimits& limits, const Camera& camera) {
     return view && may_use(limits, *view);
 }
 
-bool may_use(const EyeLimits& limits, const OcclusionView& view) {
-    const Aabb& box = limits.left_out_within;
+namespace {
+
+// What the occluder hides from the eye, the piece of `box` and `sides` hides too (EyeLimits).
+bool is_clear_of(const Aabb& box, std::span<const Plane> sides, const OcclusionView& view) {
+    if (box.is_empty()) return true;
     const glm::dvec3& eye = view.origin;
     if (view.perspective) {
         const double near_radius = (1.0 + 1e-9) * (view.near_radius + view.eye_error);
         const auto is_outside = [&](const Plane& side) { return is_beyond(side, eye, near_radius); };
-        const auto* const sides = limits.piece_sides.data();
-        if (!box.is_empty() && !(glm::distance(nearest_in(box, eye), eye) > near_radius) &&
-            std::none_of(sides, sides + limits.piece_side_count, is_outside))
-            return false;
-        return std::all_of(limits.planes.data(), limits.planes.data() + limits.plane_count,
-                           [&](const Plane& plane) { return is_beyond(plane, eye, view.eye_error); });
+        return glm::distance(nearest_in(box, eye), eye) > near_radius ||
+               std::any_of(sides.begin(), sides.end(), is_outside);
     }
     const Plane& near_plane = view.frustum.planes[4];
-    if (!box.is_empty()) {
-        const glm::dvec3 &normal = near_plane.normal, &origin = view.frustum.origin;
-        const glm::dvec3 nearest(normal.x > 0.0 ? box.min.x : box.max.x, normal.y > 0.0 ? box.min.y : box.max.y,
-                                 normal.z > 0.0 ? box.min.z : box.max.z);
-        const double error_bound =
-            0x1p-48 * (glm::dot(glm::abs(normal), glm::abs(nearest) + glm::abs(origin)) + std::abs(near_plane.offset));
-        if (!(glm::dot(normal, nearest - origin) + near_plane.offset >= error_bound)) return false;
-    }
+    const glm::dvec3 &normal = near_plane.normal, &origin = view.frustum.origin;
+    const glm::dvec3 nearest(normal.x > 0.0 ? box.min.x : box.max.x, normal.y > 0.0 ? box.min.y : box.max.y,
+                             normal.z > 0.0 ? box.min.z : box.max.z);
+    const double error_bound =
+        0x1p-48 * (glm::dot(glm::abs(normal), glm::abs(nearest) + glm::abs(origin)) + std::abs(near_plane.offset));
+    return glm::dot(normal, nearest - origin) + near_plane.offset >= error_bound;
+}
+
+bool is_inside_of(std::span<const Plane> planes, const OcclusionView& view) {
     const glm::dvec3 forward(-view.rows[3][0], -view.rows[3][1], -view.rows[3][2]);
-    for (std::uint32_t i = 0; i < limits.plane_count; ++i) {
-        const glm::dvec3& normal = limits.planes[i].normal;
-        if (!(glm::dot(forward, normal) <= -0x1p-40 * glm::length(normal))) return false;
-    }
-    return true;
+    return std::all_of(planes.begin(), planes.end(), [&](const Plane& plane) {
+        if (view.perspective) return is_beyond(plane, view.origin, view.eye_error);
+        return glm::dot(forward, plane.normal) <= -0x1p-40 * glm::length(plane.normal);
+    });
+}
+
+}  // namespace
+
+bool may_use(const EyeLimits& limits, const OcclusionView& view) {
+    return is_clear_of(limits.left_out_within, std::span(limits.piece_sides).first(limits.piece_side_count), view) &&
+           is_inside_of(std::span(limits.planes).first(limits.plane_count), view);
 }
 
 OccluderCandidates::OccluderCandidates() : data_(Owner<Data>::make()) {}
@@ -258,7 +265,11 @@ Result<void> check(std::uint64_t id, const OccluderCandidate& candidate) {
     return {};
 }
 
-void write(CandidatePage& page, std::size_t i, const glm::dvec3& origin, const OccluderCandidate& candidate) {
+}  // namespace
+
+void OccluderCandidates::Data::write(std::size_t id, const OccluderCandidate& candidate) {
+    CandidatePage& page = *pages[id / CandidatePage::kSize];
+    const std::size_t i = id % CandidatePage::kSize;
     const glm::vec3 center(candidate.center - origin);
     for (int k = 0; k < 3; ++k) page.columns[static_cast<std::size_t>(k)][i] = center[k];
     page.columns[3][i] = static_cast<float>(candidate.radius);
@@ -267,19 +278,37 @@ void write(CandidatePage& page, std::size_t i, const glm::dvec3& origin, const O
     page.columns[13][i] = candidate.front_only ? 1.0f : 0.0f;
     page.edges[i] = candidate.edges;
     page.layers[i] = candidate.layers;
-    page.limits[i] = candidate.limits;
     page.half_sizes[i] = candidate.half_size == glm::vec3(0.0f) ? glm::vec3(static_cast<float>(candidate.radius))
                                                                 : glm::abs(candidate.half_size);
+    page.left_out_within[i] = candidate.limits.left_out_within;
+    set_limits(page.limits[i], candidate.limits);
 }
 
-}  // namespace
+void OccluderCandidates::Data::set_limits(std::uint32_t& place, const EyeLimits& limits) {
+    const bool has_planes = limits.piece_side_count > 0 || limits.plane_count > 0;
+    if (!has_planes) {
+        if (place == CandidatePage::kNoPlanes) return;
+        limits_with_planes[place].next_free = first_free;
+        first_free = place;
+        place = CandidatePage::kNoPlanes;
+        return;
+    }
+    if (place == CandidatePage::kNoPlanes && first_free != CandidatePage::kNoPlanes) {
+        place = first_free;
+        first_free = limits_with_planes[place].next_free;
+    } else if (place == CandidatePage::kNoPlanes) {
+        place = static_cast<std::uint32_t>(limits_with_planes.size());
+        limits_with_planes.push_back({});
+    }
+    limits_with_planes[place].limits = limits;
+}
 
 Result<std::uint32_t> OccluderCandidates::add(const OccluderCandidate& candidate) {
     const std::size_t id = data_->count;
     if (auto status = check(id, candidate); !status) return status.error();
     if (id == 0) data_->origin = candidate.center;
     reserve(id + 1);
-    write(*data_->pages[id / CandidatePage::kSize], id % CandidatePage::kSize, data_->origin, candidate);
+    data_->write(id, candidate);
     ++data_->count;
     return static_cast<std::uint32_t>(id);
 }
@@ -287,7 +316,7 @@ Result<std::uint32_t> OccluderCandidates::add(const OccluderCandidate& candidate
 Result<void> OccluderCandidates::set(std::uint32_t id, const OccluderCandidate& candidate) {
     if (id >= size()) return fail(ErrorCode::out_of_range, id, "occluder candidate: no such id");
     if (auto status = check(id, candidate); !status) return status;
-    write(*data_->pages[id / CandidatePage::kSize], id % CandidatePage::kSize, data_->origin, candidate);
+    data_->write(id, candidate);
     return {};
 }
 
@@ -297,6 +326,9 @@ void OccluderCandidates::reserve(std::size_t count) {
 
 void OccluderCandidates::clear() {
     data_->count = 0;
+    data_->limits_with_planes.clear();
+    data_->first_free = CandidatePage::kNoPlanes;
+    for (Owner<CandidatePage>& page : data_->pages) page->limits.fill(CandidatePage::kNoPlanes);
 }
 
 std::size_t OccluderCandidates::size() const {
@@ -364,7 +396,8 @@ void choose_occluders(const OccluderCandidates& candidates, const OcclusionView&
             const CandidatePage& page = *CandidateStorage::pages(candidates)[id / CandidatePage::kSize];
             const std::size_t i = id % CandidatePage::kSize;
             if (page.edges[i] > budget.max_edges - edges) continue;
-            if (!may_use(page.limits[i], view)) continue;
+            const EyeLimits* const limits = CandidateStorage::limits_with_planes(candidates, page.limits[i]);
+            if (limits ? !may_use(*limits, view) : !is_clear_of(page.left_out_within[i], {}, view)) continue;
             edges += page.edges[i];
             choice.ids.push_back(id);
         }

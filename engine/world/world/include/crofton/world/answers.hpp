@@ -237,8 +237,10 @@ struct Contact {
     // distance along the normal by which the second must move to end the contact.
     double depth = 0.0;
     // In world coordinates, at most four. None if a mesh is inside another, or for two shapes, which have shape_points.
+    // If one object has a shape: those of convex::contact_manifold with the other's box, sphere or mesh; if the shape
+    // is inside a closed mesh, none.
     std::span<const collide::ContactPoint> points;
-    std::span<const mesh::MeshContact> triangles;       // of two meshes, or a mesh and a box
+    std::span<const mesh::MeshContact> triangles;       // of two meshes, or a mesh and a box; none if one has a shape
     std::span<convex::TrackedPoint> shape_points = {};  // of two shapes
 };
 

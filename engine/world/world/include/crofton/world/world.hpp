@@ -103,10 +103,10 @@ class World {
 
     // Gives an object a shape, or takes it away (nullptr). Pairs change with the next update, queries at once.
     //
-    // Contacts of two objects that both have shapes have Contact::shape_points. Data that the shape refers to
-    // must stay alive and unchanged; to change it, set the shape again. The object's transform, or the frame of its box
-    // or sphere, places the shape; axes that are left-handed or off by more than 1e-6 are replaced by the nearest
-    // rotation.
+    // Contacts of two objects that both have shapes have Contact::shape_points; others have Contact::points. Data that
+    // the shape refers to must stay alive and unchanged; to change it, set the shape again. The object's transform, or
+    // the frame of its box or sphere, places the shape; axes that are left-handed or off by more than 1e-6 are replaced
+    // by the nearest rotation.
     //
     // Box: from the next update on, the object's box is the smallest in its own frame that contains the shape and the
     // bound or the mesh's box, if it has one. Views, pairs and queries use this box, so that they miss no part of the
@@ -262,8 +262,8 @@ class World {
     [[nodiscard]] Result<std::optional<ShapeHit>> cast(const convex::Shape& probe, const RigidTransform& pose,
                                                        const convex::Motion& motion, const convex::CastOptions& options,
                                                        std::uint32_t layers = ~0u) const;
-    // Returns the object that is nearest to the probe, within max_distance; if several are equally near, the one with
-    // the lowest index. Tests the same shapes as overlap(): the distance is 0 iff the probe overlaps the object.
+    // Returns the object that is nearest to the probe, at most max_distance away; if several are equally near, the one
+    // with the lowest index. Tests the same shapes as overlap(): the distance is 0 iff the probe overlaps the object.
     [[nodiscard]] std::optional<ClosestObject> closest(const Sphere& probe, double max_distance,
                                                        std::uint32_t layers = ~0u) const;
     [[nodiscard]] std::optional<ClosestObject> closest(const Obb& probe, double max_distance,

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The exact oracle, on triangles, which have no inside.
+// The oracle of `crofton verify collide` and of the tests on triangles, which have no inside.
 #include <doctest/doctest.h>
 #include <crofton/convex/query.hpp>
-#include <oracle/exact_convex.hpp>
+#include <verify/exact_shapes.hpp>
 
 using namespace crofton;
 
@@ -14,12 +14,12 @@ convex::Shape triangle(const glm::vec3& a, const glm::vec3& b, const glm::vec3& 
     return *convex::Shape::triangle(a, b, c);
 }
 bool meet(const convex::Shape& a, const convex::Shape& b, const glm::dvec3& point) {
-    return oracle::meet_quickly({a, kHere}, {b, kHere}, {}, {point});
+    return oracle::meet_in<oracle::Tracked>({a, kHere}, {b, kHere}, {}, {point});
 }
 
 }  // namespace
 
-TEST_SUITE("convex/polytopes") {
+TEST_SUITE("convex/exact_shapes") {
     TEST_CASE("a point of both triangles' planes is no proof that they meet") {
         const auto low = triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
         const auto beside = triangle({3, 0, -1}, {3, 1, -1}, {3, 0, 1});
@@ -34,8 +34,8 @@ TEST_SUITE("convex/polytopes") {
         const auto meets = [&](float x, float y) {
             const glm::vec3 corner(x, y, 0);
             const auto other = triangle(corner, corner + glm::vec3(1, 0, 0), corner + glm::vec3(1, 1, 0));
-            const bool there = oracle::meet_quickly({low, kHere}, {other, kHere}, {}, {});
-            CHECK(oracle::meet_quickly({other, kHere}, {low, kHere}, {}, {}) == there);
+            const bool there = cli::meet_exactly({low, kHere}, {other, kHere}, glm::dvec3(1, 0, 0));
+            CHECK(cli::meet_exactly({other, kHere}, {low, kHere}, glm::dvec3(1, 0, 0)) == there);
             return there;
         };
         CHECK_FALSE(meets(2, 0));

@@ -6,7 +6,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <vector>
 
-namespace crofton::bench {
+namespace crofton::cli {
 
 double ConvexPairs::number(double low, double high) {
     return low + (high - low) * std::ldexp(static_cast<double>(random_() >> 11), -53);
@@ -26,16 +26,16 @@ glm::dmat3 ConvexPairs::rotation() {
     return glm::mat3_cast(glm::dquat(std::cos(angle / 2), std::sin(angle / 2) * axis));
 }
 
-convex::Shape ConvexPairs::polytope(int corners, std::unique_ptr<convex::Hull>& hull) {
+convex::Shape ConvexPairs::polytope(int corners, double size, std::unique_ptr<convex::Hull>& hull) {
     const int kind = index(8);
     if (kind < 3) {
         const double x = number(0.1, 1), y = number(0.1, 1), z = number(0.1, 1);
-        return *convex::Shape::box(glm::vec3(glm::dvec3(x, y, z)));
+        return *convex::Shape::box(glm::vec3(size * glm::dvec3(x, y, z)));
     }
-    glm::dvec3 scale(1.0);
+    glm::dvec3 scale(size);
     const int form = index(4);
     if (form == 2) scale.z *= 1e-3;
-    if (form == 3) scale.y = scale.z = 0.02;
+    if (form == 3) scale.y = scale.z = 0.02 * size;
     for (;;) {
         std::vector<glm::vec3> points;
         const int count = kind == 3 ? 3 : 4 + index(corners - 3);
@@ -52,7 +52,18 @@ convex::Shape ConvexPairs::polytope(int corners, std::unique_ptr<convex::Hull>& 
 }
 
 ConvexPairs::Pair ConvexPairs::next(int corners, double gap, double offset) {
-    const convex::Shape a = polytope(corners, hulls_[0]), b = polytope(corners, hulls_[1]);
+    const convex::Shape a = polytope(corners, 1.0, hulls_[0]), b = polytope(corners, 1.0, hulls_[1]);
+    return touching(a, b, gap, offset);
+}
+
+ConvexPairs::Pair ConvexPairs::next_of_sizes(int corners, double gap, double offset) {
+    const double power_a = number(-6.0, 6.0), power_b = number(-6.0, 6.0);
+    const double size_a = std::pow(10.0, power_a), size_b = std::pow(10.0, power_b);
+    const convex::Shape a = polytope(corners, size_a, hulls_[0]), b = polytope(corners, size_b, hulls_[1]);
+    return touching(a, b, std::max(size_a, size_b) * gap, offset);
+}
+
+ConvexPairs::Pair ConvexPairs::touching(const convex::Shape& a, const convex::Shape& b, double gap, double offset) {
     Pair pair{a, b, {rotation(), offset * glm::dvec3(1.0, -0.7, 0.3)}, {}, {}};
     pair.pose_b.rotation = index(3) != 0 ? rotation() : pair.pose_a.rotation;
     glm::dvec3 local = direction();
@@ -65,4 +76,4 @@ ConvexPairs::Pair ConvexPairs::next(int corners, double gap, double offset) {
     return pair;
 }
 
-}  // namespace crofton::bench
+}  // namespace crofton::cli

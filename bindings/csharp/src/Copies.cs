@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+using System;
+using System.Collections.Generic;
+using System.Runtime.InteropServices;
+
+namespace Crofton {
+    // Holds what the structs of a call point to until it has returned.
+    internal sealed class Copies : IDisposable {
+        readonly List<IntPtr> memory = new List<IntPtr>();
+        readonly List<GCHandle> pinned = new List<GCHandle>();
+        readonly List<SafeHandle> held = new List<SafeHandle>();
+
+        // The number of points, x, y, z each.
+        internal static UIntPtr Triples(float[] numbers, string name) {
+            Library.NotNull(numbers, name);
+            if (numbers.Length % 3 != 0) throw new ArgumentException("they are x, y, z each", name);
+            return (UIntPtr)(numbers.Length / 3);
+        }
+        internal Native.PlacedData Of(Placed placed) {
+            return new Native.PlacedData { Shape = Held(placed.Given.Handle), Pose = Copied(placed.Pose) };
+        }
+        internal Native.QueryShapeData Probe(Placed placed) { return new Native.QueryShapeData { Kind = Native.QueryShapeShape, Shape = Of(placed) }; }
+        internal Native.ViewRequestData Of(ViewRequest request) {
+            Native.ViewRequestData data = Native.crofton_default_view_request();
+            data.Layers = request.Layers;
+            data.Conservative = request.Conservative ? 1u : 0u;
+            data.TreeOrder = request.TreeOrder ? 1u : 0u;
+            if (request.Camera != null) data.Camera = Copied(request.Camera.Data());
+            if (request.Matrix != null) data.Matrix = Copied(Of(request.Matrix));
+            if (request.Volume != null) data.Volume = Copied(request.Volume.Data);
+            if (request.Occlusion != null) data.Occlusion = Copied(request.Occlusion.Data());
+            if (request.Limits != null) data.Limits = Copied(Of(request.Limits));
+            if (request.Picture != null) {
+                Native.PictureData picture = Native.crofton_default_picture_view();
+                picture.Width = request.Picture.Width;
+                picture.Height = request.Picture.Height;
+                picture.Depth = (uint)request.Picture.Depth;
+                picture.Samples = request.Picture.Samples;
+                picture.WorkLimit = request.Picture.WorkLimit;
+                data.Picture = Copied(picture);
+            }
+            if (request.Receivers != null) data.Receivers = Copied(Of(request.Receivers));
+            if (request.CandidateMask != null) {
+                data.CandidateMask = Pinned(request.CandidateMask);
+                data.CandidateWords = (UIntPtr)request.CandidateMask.Length;
+            }
+            return data;
+        }
+        Native.ShadowReceiversData Of(ShadowReceivers receivers) {
+            Library.NotNull(receivers.Seen, "Seen");
+            Native.ShadowReceiversData data = Native.crofton_default_shadow_receivers();
+            data.Seen = Held(receivers.Seen.Handle);
+            data.Radius = receivers.Radius;
+            return data;
+        }
+        Native.ViewMatrixData Of(ViewMatrix matrix) {
+            if (matrix.ToClip == null || matrix.ToClip.Length != 16) throw new ArgumentException("a matrix has sixteen numbers", "Matrix");
+            Native.ViewMatrixData data = Native.crofton_default_view_matrix();
+            data.Doubles = Pinned(matrix.ToClip);
+            data.IsRowMajor = matrix.IsRowMajor ? 1u : 0u;
+            data.Depth = (uint)matrix.Depth;
+            data.Origin = matrix.Origin;
+            return data;
+        }
+        Native.DrawLimitsData Of(DrawLimits limits) {
+            if (limits.LayerDistances != null && limits.LayerDistances.Length != 32)
+                throw new ArgumentException("there are 32 layers", "LayerDistances");
+            Native.DrawLimitsData data = Native.crofton_default_draw_limits();
+            data.Eye = limits.Eye;
+            if (!double.IsPositiveInfinity(limits.MaxDistanceInRadii)) data.MaxDistanceInRadii = limits.MaxDistanceInRadii;
+            data.LeastRadius = limits.LeastRadius;
+            data.Hysteresis = limits.Hysteresis;
+            if (limits.LayerDistances != null) data.LayerDistances = Pinned(limits.LayerDistances);
+            if (limits.ItemDistances != null) {
+                data.ItemDistances = Pinned(limits.ItemDistances);
+                data.ItemCount = (UIntPtr)limits.ItemDistances.Length;
+            }
+            if (limits.DrawnBefore != null) {
+                data.DrawnBefore = Pinned(limits.DrawnBefore);
+                data.DrawnWordCount = (UIntPtr)limits.DrawnBefore.Length;
+            }
+            return data;
+        }
+        internal IntPtr Copied<T>(T data) where T : struct {
+            IntPtr copy = Marshal.AllocHGlobal(Marshal.SizeOf(typeof(T)));
+            memory.Add(copy);
+            Marshal.StructureToPtr(data, copy, false);
+            return copy;
+        }
+        internal IntPtr Held(SafeHandle handle) {
+            bool isHeld = false;
+            handle.DangerousAddRef(ref isHeld);
+            held.Add(handle);
+            return handle.DangerousGetHandle();
+        }
+        internal IntPtr Pinned(Array numbers) {
+            var handle = GCHandle.Alloc(numbers, GCHandleType.Pinned);
+            pinned.Add(handle);
+            return handle.AddrOfPinnedObject();
+        }
+        public void Dispose() {
+            foreach (IntPtr copy in memory) Marshal.FreeHGlobal(copy);
+            foreach (GCHandle handle in pinned) handle.Free();
+            foreach (SafeHandle handle in held) handle.DangerousRelease();
+        }
+    }
+}

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+// What calls take and return, in the library's memory: handles, numbers of 64 bits, transforms, bounds.
+import { failure } from './error.js';
+import { checkArray, checkGroups, numbersOf } from './memory.js';
+import { BOX, roundedUp } from './geometry.js';
+
+export const ALL = 0xffffffff;
+
+/** Layers as 32 bits; -1 is all of them, as ALL is. */
+export function layersOf(layers) {
+    if (!(Number.isInteger(layers) && layers >= -(2 ** 31) && layers < 2 ** 32)) throw failure(1, `layers: ${layers} is no whole number of 32 bits`);
+    return layers >>> 0;
+}
+
+/** A user number's low and high half. */
+export function halvesOf(user) {
+    if (!(Number.isInteger(user) && user >= 0 && user < 2 ** 53)) throw failure(1, 'user is a whole number below 2^53');
+    return [user % 2 ** 32, Math.floor(user / 2 ** 32)];
+}
+export const userAt = ({ words }, at) => words[at >> 2] + 2 ** 32 * words[(at >> 2) + 1];
+
+/** Writes a handle. Objects, meshes, nodes and regions each count from 0; `kind` tells them apart. */
+export function giveHandle(memory, handle, kind, at) {
+    if (handle?.kind !== kind || !Number.isInteger(handle.index) || !Number.isInteger(handle.generation))
+        throw failure(14, `this is no ${kind} of a world`);
+    memory.words.set([handle.index, handle.generation], at >> 2);
+    return at;
+}
+export function handleAt({ words }, at, kind) { return { kind, index: words[at >> 2], generation: words[(at >> 2) + 1] }; }
+export const refAt = (memory, at) => ({ object: handleAt(memory, at, 'object'), user: userAt(memory, at + 8) });
+export const vectorAt = ({ doubles }, at) => [...doubles.subarray(at >> 3, (at >> 3) + 3)];
+
+export function writeTransform(memory, at, transform) {
+    if (transform?.length !== 16) throw failure(1, 'a transform has 16 numbers, by columns');
+    if (![3, 7, 11, 15].every((i) => transform[i] === (i === 15 ? 1 : 0)))
+        throw failure(6, 'the last row of a transform is 0, 0, 0, 1: it has 16 numbers, by columns');
+    const column = (c) => [transform[4 * c], transform[4 * c + 1], transform[4 * c + 2]];
+    memory.doubles.set([0, 1, 2, 3].flatMap(column), at >> 3);
+    return at;
+}
+export const IDENTITY = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
+
+export function writeBox({ doubles, floats }, at, { center, axes = [1, 0, 0, 0, 1, 0, 0, 0, 1], halfExtents }) {
+    doubles.set(numbersOf(center, 3, 'center'), at >> 3);
+    floats.set(numbersOf(axes, 9, 'axes'), at + 24 >> 2);
+    floats.set(numbersOf(halfExtents, 3, 'halfExtents').map(roundedUp), at + BOX - 12 >> 2);
+}
+export function writeBound(memory, at, { box, sphere }) {
+    const { words, doubles } = memory;
+    words[at >> 2] = box ? 1 : 3;
+    if (sphere) doubles.set([...numbersOf(sphere.center, 3, 'center'), sphere.radius], at + 128 >> 3);
+    else writeBox(memory, at + 8, box);
+}
+
+/** The arrays of a mesh, checked. */
+export function meshArrays(positions, indices) {
+    checkArray(positions, [Float32Array], 'positions');
+    checkArray(indices, [Uint32Array, Uint16Array], 'indices');
+    checkGroups(positions, 3, 'positions');
+    if (indices.length === 0) throw failure(5, 'there are no indices, so there is no triangle');
+    return [positions, indices];
+}
+/** Writes 48 bytes that describe a mesh whose arrays are at `places` and `corners`. */
+export function writeMesh(memory, at, places, corners, positions, indices, { clusters = false, oneSided = false, triangles = true, precut } = {}) {
+    memory.fill('default_mesh_data', at);
+    memory.words.set([places, positions.length / 3, 0, corners, indices.length, 0, indices instanceof Uint16Array ? 1 : 0,
+        triangles ? 1 : 0, clusters ? 1 : 0, oneSided ? 1 : 0, precut?.handle ?? 0], (at >> 2) + 1);
+}

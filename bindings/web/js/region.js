@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+import { failure } from './error.js';
+import { Owned, create } from './memory.js';
+import { ALL, halvesOf, layersOf, meshArrays, writeBound, writeMesh, writeTransform } from './records.js';
+import { shapeOf } from './shape.js';
+
+/**
+ * Many objects that do not move, relative to an origin: `World.attach`, which takes microseconds. An object is that of `World.add`, but its
+ * `mesh` is a place in `meshes`: `[{ positions, indices, clusters, oneSided, precut }]`.
+ */
+export class Region extends Owned {
+    constructor(memory, objects, { meshes = [], findOccluders = false } = {}) {
+        const arrays = meshes.flatMap(({ positions, indices }) => meshArrays(positions, indices));
+        const records = new Float64Array(25 * objects.length), transforms = new Float64Array(12 * objects.length);
+        const handle = memory.lend([records, transforms, new Uint8Array(48 * meshes.length), new Float64Array(6), ...arrays],
+            (first, poses, described, options, ...places) => {
+                objects.forEach(({ box, sphere, shape, mesh, transform, user = 0, layers = ALL, collidesWith = ALL, occludes = true, onlyOccludes = false }, i) => {
+                    const at = first + 200 * i, { words } = memory;
+                    if (!box && !sphere && !shape && mesh === undefined) throw failure(1, 'an object has a box, a sphere, a shape or a mesh', i);
+                    memory.fill('default_region_object', at);
+                    if (box || sphere) writeBound(memory, at, { box, sphere });
+                    words.set(halvesOf(user), at + 160 >> 2);
+                    words.set([layersOf(layers), layersOf(collidesWith), mesh ?? ALL, occludes ? 1 : 0, onlyOccludes ? 1 : 0], at + 168 >> 2);
+                    if (transform) words[at + 188 >> 2] = writeTransform(memory, poses + 96 * i, transform);
+                    if (shape) words[at + 192 >> 2] = shapeOf(shape).handle;
+                });
+                meshes.forEach(({ positions, indices, ...how }, i) => writeMesh(memory, described + 48 * i, places[2 * i], places[2 * i + 1], positions, indices, how));
+                memory.fill('default_region_options', options);
+                memory.words.set([described, meshes.length, findOccluders ? 1 : 0], options + 24 >> 2);
+                const slot = memory.allocate(8, 'region');
+                try {
+                    memory.call('region_prepare', first, objects.length, options, 0, slot);
+                    return memory.words[slot >> 2];
+                } finally {
+                    memory.free(slot);
+                }
+            });
+        super(memory, 'Region', handle, '_crofton_region_destroy');
+    }
+}
