@@ -110,6 +110,7 @@ class ObjReader {
         for (std::string_view line; lines_.next(line);) {
             if (++lines_read % kLinesPerLook == 0)
                 if (auto in_time = deadline_.check(); !in_time) return in_file(path_, "", in_time.error());
+            line_number_ = lines_.number();
             const std::string_view key = next_word(line);
             Result<void> done;
             if (key == "v")
@@ -119,7 +120,7 @@ class ObjReader {
             else if (key == "vn")
                 read_normal(without_comment(line));
             else if (key == "f" || key == "fo")  // an old name of it
-                done = read_face(without_comment(line));
+                done = read_face_or_keep(without_comment(line));
             else if (key == "o" || key == "g")
                 start_part(std::string(next_word(line)));
             else if (key == "usemtl")
@@ -129,10 +130,9 @@ class ObjReader {
             else if (file_.unknown_line.empty() && !is_other_keyword(key))
                 file_.unknown_line =
                     "; " + line_name() + " begins with '" + std::string(key.substr(0, 40)) + "', which is no keyword";
-            if (!done && (!options_.leave_out || done.error().code == ErrorCode::budget_exceeded))
-                return in_file(path_, "", done.error());
-            if (!done) left_out(done.error());
+            if (auto goes_on = leave_out(std::move(done)); !goes_on) return in_file(path_, "", goes_on.error());
         }
+        if (auto done = read_kept_faces(); !done) return in_file(path_, "", done.error());
         if (!bad_vertices_.empty()) drop_bad_vertices();
         if (unnamed_ > 0) file_.warnings.push_back(std::to_string(unnamed_) + " more lines make no sense: left out");
         if (unnamed_fans_ > 0)
@@ -148,18 +148,32 @@ class ObjReader {
     struct Corner {
         std::uint32_t position = 0, texcoord = ObjFile::kNone, normal = ObjFile::kNone;
     };
+    struct Counts {
+        std::size_t positions = 0, texcoords = 0, normals = 0;
+    };
+    // A face that names what comes later, or that comes after such a face.
+    struct KeptFace {
+        std::string line;
+        std::size_t line_number = 0, part = 0;
+        Counts before;  // it
+    };
 
     Result<void> bad(ErrorCode code, const std::string& why) const {
-        return fail(code, lines_.number(), line_name() + ": " + why);
+        return fail(code, line_number_, line_name() + ": " + why);
     }
 
-    [[nodiscard]] std::string line_name() const { return "line " + std::to_string(lines_.number()); }
+    [[nodiscard]] std::string line_name() const { return "line " + std::to_string(line_number_); }
 
-    void left_out(const Error& why) {
+    // Returns the errors that end the reading; others become warnings.
+    Result<void> leave_out(Result<void> done) {
+        if (done) return done;
+        if (!options_.leave_out || done.error().code == ErrorCode::budget_exceeded) return done;
+        const Error& why = done.error();
         if (file_.warnings.size() < kMostWarnings)
             file_.warnings.push_back(why.message + ": left out");
         else
             ++unnamed_;
+        return {};
     }
 
     // A bad one keeps its number until the end, and faces that name it are left out.
@@ -207,21 +221,22 @@ class ObjReader {
         file_.normals.push_back(normal);
     }
 
-    // 1, 2, … from the first, −1, −2, … from the last so far; kNone for what is not there.
-    static std::uint32_t resolve(long long index, std::size_t count) {
-        const auto total = static_cast<long long>(count);
-        const long long position = index < 0 ? total + index : index - 1;
-        return position < 0 || position >= total ? ObjFile::kNone : static_cast<std::uint32_t>(position);
+    // 1, 2, … from the first, −1, −2, … from the last before the face; kNone for what is not there.
+    std::uint32_t resolve(long long index, std::size_t before, std::size_t count) {
+        const long long position = index < 0 ? static_cast<long long>(before) + index : index - 1;
+        if (position >= 0 && position < static_cast<long long>(count)) return static_cast<std::uint32_t>(position);
+        names_later_ = names_later_ || position >= 0;
+        return ObjFile::kNone;
     }
 
-    std::uint32_t optional_index(std::string_view& word, std::size_t count) {
+    std::uint32_t optional_index(std::string_view& word, std::size_t before, std::size_t count) {
         if (word.empty()) return ObjFile::kNone;
         word.remove_prefix(1);
         const std::string_view number = word.substr(0, word.find('/'));
         word.remove_prefix(number.size());
         if (number.empty()) return ObjFile::kNone;
         long long index = 0;
-        const std::uint32_t found = parse(number, index) ? resolve(index, count) : ObjFile::kNone;
+        const std::uint32_t found = parse(number, index) ? resolve(index, before, count) : ObjFile::kNone;
         dangling_ += found == ObjFile::kNone;
         return found;
     }
@@ -231,7 +246,7 @@ class ObjReader {
         long long index = 0;
         if (!parse(number, index))
             return bad(ErrorCode::parse, "face: '" + std::string(word.substr(0, 40)) + "' is not a vertex").error();
-        Corner corner{resolve(index, file_.positions.size())};
+        Corner corner{resolve(index, before_.positions, file_.positions.size())};
         if (corner.position == ObjFile::kNone)
             return bad(ErrorCode::out_of_range, "face: vertex " + std::to_string(index) + " of " +
                                                     std::to_string(file_.positions.size()) + file_.unknown_line)
@@ -239,11 +254,41 @@ class ObjReader {
         if (std::binary_search(bad_vertices_.begin(), bad_vertices_.end(), corner.position))
             return bad(ErrorCode::parse, "face: vertex " + std::to_string(index) + " makes no sense").error();
         std::string_view rest = word.substr(number.size());
-        corner.texcoord = optional_index(rest, file_.texcoords.size());
-        corner.normal = optional_index(rest, file_.normals.size());
+        corner.texcoord = optional_index(rest, before_.texcoords, file_.texcoords.size());
+        corner.normal = optional_index(rest, before_.normals, file_.normals.size());
         return corner;
     }
 
+    // A face may name vertices that come later. It is kept until the end, and so are all faces after it, which keeps
+    // their order.
+    Result<void> read_face_or_keep(std::string_view line) {
+        before_ = {file_.positions.size(), file_.texcoords.size(), file_.normals.size()};
+        part_ = file_.parts.size() - 1;
+        if (kept_faces_.empty()) {
+            const std::size_t dangling = dangling_;
+            names_later_ = false;
+            auto done = read_face(line);
+            if (!names_later_) return done;
+            dangling_ = dangling;
+        }
+        kept_faces_.push_back({std::string(line), line_number_, part_, before_});
+        return {};
+    }
+
+    Result<void> read_kept_faces() {
+        for (std::size_t i = 0; i < kept_faces_.size(); ++i) {
+            if (i % kLinesPerLook == 0)
+                if (auto in_time = deadline_.check(); !in_time) return in_time;
+            line_number_ = kept_faces_[i].line_number;
+            part_ = kept_faces_[i].part;
+            before_ = kept_faces_[i].before;
+            if (auto goes_on = leave_out(read_face(kept_faces_[i].line)); !goes_on) return goes_on;
+        }
+        kept_faces_.clear();
+        return {};
+    }
+
+    // Adds the triangles of a face unless it names what is not there yet.
     Result<void> read_face(std::string_view line) {
         face_.clear();
         for (std::string_view word = next_word(line); !word.empty(); word = next_word(line)) {
@@ -251,6 +296,7 @@ class ObjReader {
             if (!corner) return corner.error();
             face_.push_back(*corner);
         }
+        if (names_later_ && kept_faces_.empty()) return {};
         if (face_.size() < 3) return bad(ErrorCode::parse, "face: fewer than three vertices");
         if (face_.size() - 2 > options_.limits.triangles - triangles_)
             return over_limit("triangles", options_.limits.triangles);
@@ -263,7 +309,7 @@ class ObjReader {
             return over_limit("triangles", options_.limits.triangles);
         triangles_ += triangulator_.triangles().size();
         for (const auto& triangle : triangulator_.triangles())
-            for (const std::uint32_t corner : triangle) add_corner(file_.parts.back(), face_[corner]);
+            for (const std::uint32_t corner : triangle) add_corner(file_.parts[part_], face_[corner]);
         if (cut == FaceCut::no_polygon) note_fan();
         return {};
     }
@@ -312,7 +358,8 @@ class ObjReader {
         part.emission = last.emission;
         part.material = last.material;
         part.texture = last.texture;
-        if (last.indices.empty()) file_.parts.pop_back();
+        const bool gets_faces = !kept_faces_.empty() && kept_faces_.back().part + 1 == file_.parts.size();
+        if (last.indices.empty() && !gets_faces) file_.parts.pop_back();
         file_.parts.push_back(std::move(part));
     }
 
@@ -365,7 +412,12 @@ class ObjReader {
     Deadline deadline_;
     std::size_t dangling_ = 0, unnamed_ = 0, unnamed_fans_ = 0, libraries_ = 0;
     std::uint64_t triangles_ = 0;
+    std::size_t line_number_ = 0;
     std::vector<std::uint32_t> bad_vertices_;  // ascending
+    std::vector<KeptFace> kept_faces_;
+    std::size_t part_ = 0;  // of the face that is read
+    Counts before_;         // it
+    bool names_later_ = false;
     std::vector<Corner> face_;
     std::vector<glm::dvec3> outline_;
     FaceTriangulator triangulator_;

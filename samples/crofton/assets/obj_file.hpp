@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Wavefront OBJ: v (with optional colours or weight), vt, vn, f (any polygon, concave ones and keyholes too), o, g,
-// usemtl with Kd, Ke and map_Kd of a material library. Lines may end in LF, CR LF or CR, continue after "\" and end in
-// a comment. Curves, surfaces, lines and points are not read.
+// usemtl with Kd, Ke and map_Kd of a material library. Faces may come before their vertices. Lines may end in LF, CR LF
+// or CR, continue after "\" and end in a comment. Curves, surfaces, lines and points are not read.
 #pragma once
 #include <crofton/core/error.hpp>
 #include <cstdint>

@@ -54,6 +54,42 @@ const std::vector<std::string> kPlain = {"# C:\\models\\",
 }  // namespace
 
 TEST_SUITE("assets/obj_lines") {
+    TEST_CASE("faces may come before what they name, wherever the vertices are; negative numbers count back") {
+        std::string plain, faces_first, vertices_between, dangling;
+        const auto is_face_or_part = [](const std::string& line) {
+            return line[0] == 'f' || line[0] == 'o' || line[0] == 'g' || line[0] == 'u';
+        };
+        for (std::string line : kPlain) {
+            if (line.empty()) continue;
+            if (line == "f -4 -3 -2") line = "f 1 2 3";
+            plain += line + "\n";
+            if (is_face_or_part(line)) faces_first += line + "\n";
+        }
+        for (const std::string& line : kPlain)
+            if (!line.empty() && !is_face_or_part(line)) faces_first += line + "\n";
+        check_same(read_lines(faces_first), read_lines(plain));
+        // Only the last vertex comes later; negative numbers are those of the face's own place.
+        const assets::ObjFile between =
+            read_lines("v 0 0 0\nv 2 0 0\nv 2 2 0\no a\nf 1 2 3\nf 1 3 4\no b\nf -3 -2 -1\no c\nv 0 2 0\nf -3 -2 -1\n");
+        REQUIRE(between.parts.size() == 3);
+        CHECK(between.parts[0].indices == std::vector<std::uint32_t>{0, 1, 2, 0, 2, 3});
+        CHECK(between.parts[1].indices == std::vector<std::uint32_t>{0, 1, 2});
+        CHECK(between.parts[2].indices == std::vector<std::uint32_t>{1, 2, 3});
+        // What never comes is missing, with the line that names it.
+        const auto message = [](const std::string& text, bool lenient) {
+            const TemporaryFile file("late.obj", text);
+            const auto obj = assets::read_obj(file.path(), {.leave_out = lenient});
+            return !obj ? obj.error().message : obj->warnings.empty() ? std::string() : obj->warnings[0];
+        };
+        for (const bool lenient : {false, true}) {
+            const std::string told = message("f 1 2 3\nf 1 2 4\nv 0 0 0\nv 1 0 0\nv 0 1 0\n", lenient);
+            CHECK(told.find("line 2: face: vertex 4 of 3") != std::string::npos);
+            CHECK(message("f 1 2 -1\nv 0 0 0\nv 1 0 0\nv 0 1 0\n", lenient).find("line 1: face: vertex -1 of 3") !=
+                  std::string::npos);
+            CHECK(message("f 1 2 3\nv 0 0 0\nv 1 x 0\nv 0 1 0\n", true).find("vertex 2") != std::string::npos);
+        }
+    }
+
     TEST_CASE("line ends, continuations, blanks and comments of every kind mean the same") {
         std::string plain;
         for (const std::string& line : kPlain) plain += line + "\n";

@@ -199,6 +199,43 @@ TEST_SUITE("convex/parallel_sides") {
         }
     }
 
+    TEST_CASE("a round side just outside a surface's own triangle has two points on the triangle's edge") {
+        RandomShapes random(7);
+        for (int i = 0; i < 2000; ++i) {
+            CAPTURE(i);
+            const float half = float(random.number(0.2, 1.0)), radius = float(random.number(0.1, 0.5));
+            const bool cylinder = i % 2 == 0;
+            const Shape side = cylinder ? Shape::cylinder(half, radius).value() : Shape::capsule(half, radius).value();
+            // Its edge at x = 0 runs along y.
+            Surface sheet;
+            const float low_y = float(random.number(-1.5, -0.3)), high_y = float(random.number(0.3, 1.5));
+            sheet.mesh.positions = {{0, low_y, 0}, {0, high_y, 0}, {-float(random.number(0.5, 2.0)), 0, 0}};
+            sheet.mesh.indices = {0, 1, 2};
+            sheet.build();
+            const Shape surface = sheet.shape(random.index(2) != 0 ? Sides::both : Sides::front);
+            const double off = std::pow(10.0, -random.number(cylinder ? 6.0 : 9.0, 12.0)), y = random.number(-0.8, 0.8),
+                         depth = random.number(0.0, 0.2 * double(radius));
+            const RigidTransform frame{random.rotation(), 10.0 * random.direction()};
+            const RigidTransform pose{frame.rotation, transform(frame, glm::dvec3(off, y, double(radius) - depth))};
+            const double low = std::max(double(low_y), y - double(half)),
+                         high = std::min(double(high_y), y + double(half));
+            if (high - low < depth + 0.01) continue;  // out over an end
+            const bool flip = random.index(2) != 0;
+            const ShapeAtPose a{surface, frame}, b{side, pose};
+            const Manifold m = flip ? contact_manifold(b, a) : contact_manifold(a, b);
+            CHECK(m.count == 2);
+            double told[2] = {HUGE_VAL, -HUGE_VAL};
+            for (int k = 0; k < m.count; ++k) {
+                const glm::dvec3 p = glm::transpose(frame.rotation) * (m.points[k].position - frame.translation);
+                told[0] = std::min(told[0], p.y), told[1] = std::max(told[1], p.y);
+                CHECK(std::abs(p.x) <= 1e-5);
+                CHECK(std::abs(m.points[k].depth - depth) <= 1e-5);
+            }
+            CHECK(std::abs(told[0] - low) <= 1e-5);
+            CHECK(std::abs(told[1] - high) <= 1e-5);
+        }
+    }
+
     TEST_CASE("capsules have two points up to two degrees and one beyond, whatever their size") {
         for (const double scale : {1e-6, 1e-3, 1.0, 1e3, 1e9})
             for (const double degrees : {1.5, 1.85, 1.99, 1.999, 2.001, 2.01, 2.5}) {

@@ -140,9 +140,11 @@ void SurfaceContacts::gather_patches_along(const PlacedTriangle& t, Gatherer& ga
     Clipped clipped;
     const bool round = shape_.shape.radius() > 0.0 || !shape_.shape.has_polytope_core();
     if (!box_ || round) patch_along(shape_, -normal, gathering_.origin, on_shape);
-    if (round && gather_parallel_edges({nullptr, on_triangle}, {&shape_, on_shape}, normal, gathering_.origin, size_,
-                                       clipped, gatherer))
-        return;
+    const auto lies_along = [&](bool off_face) {
+        return round && gather_parallel_edges({nullptr, on_triangle}, {&shape_, on_shape}, normal, gathering_.origin,
+                                              size_, clipped, gatherer, off_face);
+    };
+    if (lies_along(false)) return;
     if (box_) {
         const int face = face_along(shape_.shape, Pair::local(shape_.pose.rotation, -normal));
         BoxFace(shape_, face, box_->to_local(), gathering_.origin, size_).clip(on_triangle, -normal, clipped);
@@ -150,6 +152,7 @@ void SurfaceContacts::gather_patches_along(const PlacedTriangle& t, Gatherer& ga
         on_shape.self = {FeatureKind::face, static_cast<std::uint16_t>(face)};
     } else {
         (void)gather_patches(on_triangle, on_shape, normal, clipped, gatherer);
+        if (gatherer.points.count == 0) (void)lies_along(true);
     }
 }
 
