@@ -127,14 +127,28 @@ TEST_SUITE("capi/depth") {
             REQUIRE(crofton_permute_triangles(&all, mesh.indices.data(), mesh.indices.size(), permuted.data()) ==
                     CROFTON_OK);
             std::uint32_t next = 0;
-            for (const crofton_cluster& c : clusters_of(clustered)) {
+            crofton_cluster_box box{};
+            for (std::size_t i = 0; i < all.cluster_count; ++i) {
+                const crofton_cluster& c = all.clusters[i];
                 CHECK(c.first_triangle == next);
                 CHECK((c.triangle_count >= 1 && c.triangle_count <= most));
                 next += c.triangle_count;
-                for (std::uint32_t k = 3 * c.first_triangle; k < 3 * next; ++k)
+                REQUIRE(crofton_clustered_mesh_box(clustered.get(), i, &box) == CROFTON_OK);
+                for (std::uint32_t k = 3 * c.first_triangle; k < 3 * next; ++k) {
                     CHECK(permuted[k] == mesh.indices[3 * order[k / 3] + k % 3]);
+                    // One edge of a flat box is nearly 0: its extent along an axis is the sum of the edges'.
+                    const glm::vec3 p = mesh.positions[permuted[k]];
+                    for (int axis = 0; axis < 3; ++axis) {
+                        double extent = 0.0;
+                        for (int edge = 0; edge < 3; ++edge)
+                            extent += std::abs(double{box.half_edges[3 * edge + axis]});
+                        CHECK(std::abs(double{p[axis]} - double{box.center[axis]}) <= extent);
+                    }
+                }
             }
             CHECK(next == 800);
+            CHECK(crofton_clustered_mesh_box(clustered.get(), all.cluster_count, &box) == CROFTON_OUT_OF_RANGE);
+            CHECK(crofton_clustered_mesh_box(clustered.get(), 0, nullptr) == CROFTON_INVALID_ARGUMENT);
         }
     }
 

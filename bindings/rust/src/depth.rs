@@ -4,7 +4,7 @@ use crate::error::{check, slice};
 use crate::jobs::with_jobs;
 use crate::shape::raw_mesh;
 use crate::views::raw_picture;
-use crate::{sys, Clusters, Executor, PictureView, Result, VisibleCluster};
+use crate::{sys, ClusterBox, Clusters, Executor, PictureView, Result, VisibleCluster};
 use std::ptr;
 
 /// A mesh cut into clusters. It never changes. [`MeshData::precut`](crate::MeshData) gives it to a World.
@@ -36,6 +36,12 @@ impl ClusteredMesh {
         let mut raw: sys::Clusters = unsafe { std::mem::zeroed() };
         check(unsafe { sys::crofton_clustered_mesh_get(self.raw, &mut raw) })?;
         Ok(unsafe { Clusters::of(&raw) })
+    }
+    /// Returns a box that contains the triangles of a cluster, in the mesh's coordinates.
+    pub fn box_of(&self, cluster: usize) -> Result<ClusterBox> {
+        let mut found = ClusterBox { center: [0.0; 3], half_edges: [[0.0; 3]; 3] };
+        check(unsafe { sys::crofton_clustered_mesh_box(self.raw, cluster, &mut found) })?;
+        Ok(found)
     }
 }
 

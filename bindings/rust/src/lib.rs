@@ -53,7 +53,7 @@ pub use shape::{
     CastOptions, HeightField, Impact, MassProperties, Motion, Part, Penetration, Placed, Shape, ShapeRayHit,
 };
 pub use triangulate::{Method, Triangulation, Triangulator};
-pub use views::{Cluster, Clusters, DrawLimits, PictureView, Seen, SeenByMany, ShadowReceivers};
+pub use views::{Cluster, ClusterBox, Clusters, DrawLimits, PictureView, Seen, SeenByMany, ShadowReceivers};
 pub use views::{ViewMatrix, ViewRequest, ViewResult, VisibleCluster};
 pub use world::{Mesh, Node, Object, ObjectRef, Statistics, World, WorldOptions};
 

@@ -640,6 +640,9 @@ extern "C" {
     ) -> Status;
     pub fn crofton_clustered_mesh_destroy(clustered: *mut ClusteredMesh) -> Status;
     pub fn crofton_clustered_mesh_get(clustered: *const ClusteredMesh, clusters: *mut Clusters) -> Status;
+    pub fn crofton_clustered_mesh_box(
+        clustered: *const ClusteredMesh, cluster: usize, cluster_box: *mut crate::ClusterBox,
+    ) -> Status;
     pub fn crofton_depth_culler_create(culler: *mut *mut DepthCuller) -> Status;
     pub fn crofton_depth_culler_destroy(culler: *mut DepthCuller) -> Status;
     pub fn crofton_depth_culler_find_visible(

@@ -153,6 +153,16 @@ pub struct VisibleCluster {
     pub triangles: u64,
 }
 
+/// Contains a cluster's triangles, in the mesh's coordinates.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ClusterBox {
+    /// The center of the box.
+    pub center: [f32; 3],
+    /// The corners of the box are the center plus or minus each of the three.
+    pub half_edges: [[f32; 3]; 3],
+}
+
 /// A group of neighbouring triangles.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -306,6 +306,12 @@ fn a_culler_of_its_own_lists_the_same_triangles_and_takes_clusters_that_were_cut
     let corners = [[-3.0, -3.0, 0.0], [3.0, -3.0, 0.0], [3.0, 3.0, 0.0], [-3.0, 3.0, 0.0]];
     let mesh = ClusteredMesh::new(&corners, &[0, 1, 2, 0, 2, 3], 0).unwrap();
     assert_eq!((mesh.clusters().unwrap().clusters.len(), mesh.clusters().unwrap().triangle_order.len()), (1, 2));
+    let around = mesh.box_of(0).unwrap();
+    for i in 0..3 {
+        let extent: f32 = around.half_edges.iter().map(|edge| edge[i].abs()).sum();
+        assert!(corners.iter().all(|corner| (corner[i] - around.center[i]).abs() <= extent));
+    }
+    assert_eq!(mesh.box_of(1).unwrap_err().status, Status::OutOfRange);
     // Reversed depth to infinity: w = -z, near plane 1. Of three walls the second is hidden.
     let place = |x: f32, z: f32| [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0, x, 0.0, 1.0, -z];
     let object = |x, z| DepthObject { mesh: &mesh, to_clip: place(x, z), one_sided: false, hides: true };

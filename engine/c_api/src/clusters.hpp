@@ -12,6 +12,8 @@ namespace crofton::capi {
 static_assert(CROFTON_MAX_CLUSTER_TRIANGLES == depth::Cluster::kMaxTriangles);
 static_assert(sizeof(crofton_cluster) == sizeof(depth::Cluster) &&
               offsetof(crofton_cluster, triangle_count) == offsetof(depth::Cluster, triangle_count));
+static_assert(sizeof(crofton_cluster_box) == sizeof(depth::ClusterBox) &&
+              offsetof(crofton_cluster_box, half_edges) == offsetof(depth::ClusterBox, half_edges));
 static_assert(sizeof(crofton_visible_cluster) == sizeof(depth::VisibleCluster) &&
               offsetof(crofton_visible_cluster, cluster) == offsetof(depth::VisibleCluster, cluster) &&
               offsetof(crofton_visible_cluster, triangles) == offsetof(depth::VisibleCluster, triangles));

@@ -136,6 +136,18 @@ crofton_status crofton_clustered_mesh_get(const crofton_clustered_mesh* clustere
     return CROFTON_OK;
 }
 
+crofton_status crofton_clustered_mesh_box(const crofton_clustered_mesh* clustered, size_t cluster,
+                                          crofton_cluster_box* box) {
+    const SharedUse use(clustered, __func__);
+    if (use.failed()) return use.status();
+    CROFTON_CHECK(check_pointer(box, __func__));
+    if (cluster >= clustered->mesh.clusters().size())
+        return report(CROFTON_OUT_OF_RANGE, __func__, "no such cluster", cluster);
+    const depth::ClusterBox of = clustered->mesh.box_of(cluster);
+    std::memcpy(box, &of, sizeof of);
+    return CROFTON_OK;
+}
+
 crofton_status crofton_permute_triangles(const crofton_clusters* clusters, const uint32_t* indices, size_t index_count,
                                          uint32_t* permuted) {
     CROFTON_CHECK(check_pointer(clusters, __func__));

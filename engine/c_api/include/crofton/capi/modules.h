@@ -76,6 +76,9 @@ CROFTON_API crofton_status crofton_clustered_mesh_destroy(crofton_clustered_mesh
 /* Returns the clusters; valid as long as the clustered mesh. */
 CROFTON_API crofton_status crofton_clustered_mesh_get(const crofton_clustered_mesh* clustered,
                                                       crofton_clusters* clusters);
+/* CROFTON_OUT_OF_RANGE: there is no such cluster. */
+CROFTON_API crofton_status crofton_clustered_mesh_box(const crofton_clustered_mesh* clustered, size_t cluster,
+                                                      crofton_cluster_box* box);
 /* Writes bytes from which crofton_clustered_mesh_deserialise makes an equal object without cutting again, on machines
  * of the same byte order. Writes none if `capacity` is less than *count, which is set to how many there are. */
 CROFTON_API crofton_status crofton_clustered_mesh_serialise(const crofton_clustered_mesh* clustered, uint8_t* bytes,

@@ -31,6 +31,12 @@ typedef struct crofton_cluster {
     uint32_t first_triangle, triangle_count; /* 1 to CROFTON_MAX_CLUSTER_TRIANGLES */
 } crofton_cluster;
 
+/* Contains a cluster's triangles, in the mesh's coordinates. */
+typedef struct crofton_cluster_box {
+    float center[3];
+    float half_edges[9]; /* half_edges[3 k + i] is component i of edge k; center +- each edge gives the corners */
+} crofton_cluster_box;
+
 typedef struct crofton_clustered_mesh crofton_clustered_mesh; /* a mesh cut into clusters; it never changes */
 
 /* A mesh cut into clusters. The k-th triangle of the order is triangle triangle_order[k] of the given mesh. */
