@@ -14,9 +14,10 @@ py::sequence parts_of(const py::object& given, std::size_t count, const char* wh
     return py::reinterpret_borrow<py::sequence>(given);
 }
 
-Obb box_of(const py::object& given) {
-    if (!py::isinstance<Obb>(given)) raise_type("box: a Box is expected");
-    return given.cast<const Obb&>();
+const Obb& box_of(const py::object& given) {
+    const Obb* const box = as<Obb>(given);
+    if (!box) raise_type("box: a Box is expected");
+    return *box;
 }
 
 Sphere sphere_of(const py::object& given) {

@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "method.hpp"
 #include "shapes.hpp"
 #include "world.hpp"
 
@@ -60,22 +61,74 @@ Ray ray_of(const py::handle& origin, const py::handle& direction, double max_t) 
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Calls with the world and the probe that is given; with a shape and its pose, with both.
+std::uint32_t layers_of(const py::handle& given) {
+    return given.is_none() ? ~0u : number_of<std::uint32_t>(given, "layers");
+}
+py::object borrowed(const py::handle& given) {
+    return py::reinterpret_borrow<py::object>(given);
+}
+
+// What a query asks with: a box, a sphere, a capsule, or a shape and its pose.
+struct Probe {
+    py::handle box, sphere, capsule, shape, pose;
+};
+
+// Calls with the world and the probe; with a shape, also with its pose.
 template <class F>
-void visit_shape(const PyWorld& world, const py::object& box, const py::object& sphere, const py::object& capsule,
-                 const SharedShape& shape, const py::object& given_pose, F&& f) {
-    if (!shape && !given_pose.is_none()) raise_type("pose: it places a shape, and there is none");
-    if (!shape) {
-        const Shape probe = shape_of(box, sphere, capsule);
-        world.ask([&](const World& w) { std::visit([&](const auto& one) { f(w, one); }, probe); });
+void visit_probe(const PyWorld& world, const Probe& probe, F&& f) {
+    if (probe.shape.is_none()) {
+        if (!probe.pose.is_none()) raise_type("pose: it places a shape, and there is none");
+        const Shape shape = shape_of(borrowed(probe.box), borrowed(probe.sphere), borrowed(probe.capsule));
+        world.ask([&](const World& w) { std::visit([&](const auto& one) { f(w, one); }, shape); });
         return;
     }
-    if (!box.is_none() || !sphere.is_none() || !capsule.is_none())
+    const PyShape* const shape = as<PyShape>(probe.shape);
+    if (!shape) raise_type("shape: a Shape is expected");
+    if (!probe.box.is_none() || !probe.sphere.is_none() || !probe.capsule.is_none())
         raise_type("one of box=, sphere=, capsule= and shape= is expected, not more");
     if (shape->shape->kind() == convex::Kind::half_space)
         raise({ErrorCode::unsupported, kNoItem, "shape: a half-space is infinite; ask with a shape that has bounds"});
-    const RigidTransform pose = pose_of(given_pose, "pose");
+    const RigidTransform pose = pose_of(borrowed(probe.pose), "pose");
     world.ask([&](const World& w) { f(w, *shape->shape, pose); });
+}
+
+PyObject* overlap_method(PyObject* self, PyObject* const* values, Py_ssize_t count, PyObject* keywords) {
+    return call_method<PyWorld>(self, [&](const PyWorld& world) {
+        constexpr std::array kNames = {"box", "sphere", "capsule", "shape", "pose", "layers"};
+        const auto a = arguments_of("overlap", kNames, 0, values, count, keywords);
+        const std::uint32_t layers = layers_of(a[5]);
+        Vector<ObjectRef> found;
+        visit_probe(world, {a[0], a[1], a[2], a[3], a[4]},
+                    [&](const World& w, const auto&... probe) { w.overlap(probe..., found, layers); });
+        py::array handles(handle_dtype(), py::array::ShapeContainer{static_cast<py::ssize_t>(found.size())});
+        auto* out = static_cast<ObjectHandle*>(handles.mutable_data());
+        for (const ObjectRef& ref : found) *out++ = ref.object;
+        return handles;
+    });
+}
+
+PyObject* closest_method(PyObject* self, PyObject* const* values, Py_ssize_t count, PyObject* keywords) {
+    return call_method<PyWorld>(self, [&](const PyWorld& world) {
+        constexpr std::array kNames = {"max_distance", "box", "sphere", "capsule", "shape", "pose", "layers"};
+        const auto a = arguments_of("closest", kNames, 1, values, count, keywords);
+        const auto max_distance = number_of<double>(a[0], "max_distance");
+        check_limit(max_distance, "max_distance");
+        const std::uint32_t layers = layers_of(a[6]);
+        std::optional<ClosestObject> found;
+        visit_probe(world, {a[1], a[2], a[3], a[4], a[5]},
+                    [&](const World& w, const auto&... probe) { found = w.closest(probe..., max_distance, layers); });
+        return py::cast(found);
+    });
+}
+
+PyObject* raycast_method(PyObject* self, PyObject* const* values, Py_ssize_t count, PyObject* keywords) {
+    return call_method<PyWorld>(self, [&](const PyWorld& world) {
+        constexpr std::array kNames = {"origin", "direction", "max_t", "layers"};
+        const auto a = arguments_of("raycast", kNames, 4, values, count, keywords);
+        const Ray ray = ray_of(a[0], a[1], a[2].is_none() ? kInfinity : number_of<double>(a[2], "max_t"));
+        const std::uint32_t layers = layers_of(a[3]);
+        return py::cast(world.ask([&](const World& w) { return w.raycast(ray, layers); }));
+    });
 }
 
 std::optional<ShapeHit> cast(const PyWorld& world, const PyShape& shape, const py::handle& velocity,
@@ -142,16 +195,17 @@ void bind_world_queries(py::module_& module, py::class_<PyWorld>& type) {
              })
         .def_property_readonly("on_shape", [](const ClosestObject& c) { return tuple_of(c.on_shape); })
         .def_property_readonly("on_object", [](const ClosestObject& c) { return tuple_of(c.on_object); });
-    type.def(
-            "raycast",
-            [](const PyWorld& world, const py::handle& origin, const py::handle& direction, double max_t,
-               std::uint32_t layers) {
-                const Ray ray = ray_of(origin, direction, max_t);
-                return world.ask([&](const World& w) { return w.raycast(ray, layers); });
-            },
-            py::arg("origin"), py::arg("direction"), py::arg("max_t") = kInfinity, py::arg("layers") = ~0u,
-            "Returns the nearest ObjectHit, or None.")
-        .def("raycast_many", &raycast_many, py::arg("origins"), py::arg("directions"), py::arg("max_t") = kInfinity,
+    add_method(type, "raycast", &raycast_method,
+               "raycast($self, origin, direction, max_t=inf, layers=None)\n--\n\n"
+               "Returns the nearest ObjectHit, or None.");
+    add_method(type, "overlap", &overlap_method,
+               "overlap($self, *, box=None, sphere=None, capsule=None, shape=None, pose=None, layers=None)\n--\n\n"
+               "Returns the handles of the objects that overlap a box, sphere, capsule, or Shape at `pose`.");
+    add_method(type, "closest", &closest_method,
+               "closest($self, max_distance, *, box=None, sphere=None, capsule=None, shape=None, pose=None, "
+               "layers=None)\n--\n\n"
+               "Returns the nearest object, or None.");
+    type.def("raycast_many", &raycast_many, py::arg("origins"), py::arg("directions"), py::arg("max_t") = kInfinity,
              py::arg("layers") = ~0u,
              "Returns the nearest hit of each ray, as an array of records; `hit` is 0 for rays that hit nothing.")
         .def(
@@ -167,34 +221,6 @@ void bind_world_queries(py::module_& module, py::class_<PyWorld>& type) {
             },
             py::arg("origin"), py::arg("direction"), py::arg("max_t") = kInfinity, py::arg("layers") = ~0u,
             "Returns each object's first ObjectHit, ordered along the ray.")
-        .def(
-            "overlap",
-            [](const PyWorld& world, const py::object& box, const py::object& sphere, const py::object& capsule,
-               const SharedShape& shape, const py::object& pose, std::uint32_t layers) {
-                Vector<ObjectRef> found;
-                visit_shape(world, box, sphere, capsule, shape, pose,
-                            [&](const World& w, const auto&... probe) { w.overlap(probe..., found, layers); });
-                std::vector<ObjectHandle> handles;
-                for (const ObjectRef& ref : found) handles.push_back(ref.object);
-                return handles_of(handles);
-            },
-            py::kw_only(), py::arg("box") = py::none(), py::arg("sphere") = py::none(), py::arg("capsule") = py::none(),
-            py::arg("shape") = py::none(), py::arg("pose") = py::none(), py::arg("layers") = ~0u,
-            "Returns the handles of the objects that overlap a box, sphere, capsule, or Shape at `pose`.")
-        .def(
-            "closest",
-            [](const PyWorld& world, double max_distance, const py::object& box, const py::object& sphere,
-               const py::object& capsule, const SharedShape& shape, const py::object& pose, std::uint32_t layers) {
-                check_limit(max_distance, "max_distance");
-                std::optional<ClosestObject> found;
-                visit_shape(world, box, sphere, capsule, shape, pose, [&](const World& w, const auto&... probe) {
-                    found = w.closest(probe..., max_distance, layers);
-                });
-                return found;
-            },
-            py::arg("max_distance"), py::kw_only(), py::arg("box") = py::none(), py::arg("sphere") = py::none(),
-            py::arg("capsule") = py::none(), py::arg("shape") = py::none(), py::arg("pose") = py::none(),
-            py::arg("layers") = ~0u, "Returns the nearest object, or None.")
         .def("cast", &cast, py::arg("shape"), py::arg("velocity"), py::arg("pose") = py::none(), py::kw_only(),
              py::arg("spin") = py::make_tuple(0.0, 0.0, 0.0), py::arg("duration") = 1.0,
              py::arg("ignore_initial_overlaps") = false, py::arg("layers") = ~0u,

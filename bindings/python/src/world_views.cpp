@@ -5,6 +5,7 @@
 #include <array>
 #include <utility>
 
+#include "method.hpp"
 #include "views.hpp"
 #include "world.hpp"
 
@@ -127,40 +128,11 @@ py::object view(const PyWorld& world, const RequestArguments& given) {
 constexpr std::array kArguments = {"camera",    "matrix", "volume",     "layers", "occlusion",   "picture",
                                    "receivers", "limits", "candidates", "order",  "conservative"};
 
-// The first argument may come by place, the others by name.
-RequestArguments arguments_of(PyObject* const* values, Py_ssize_t count, PyObject* names) {
-    if (count > 1) raise_type("view: all arguments but the camera are given by name");
-    std::array<py::handle, kArguments.size()> all;
-    all.fill(Py_None);
-    if (count == 1) all[0] = values[0];
-    const Py_ssize_t named = names ? PyTuple_GET_SIZE(names) : 0;
-    for (Py_ssize_t i = 0; i < named; ++i) {
-        PyObject* const name = PyTuple_GET_ITEM(names, i);
-        std::size_t k = 0;
-        while (k < all.size() && PyUnicode_CompareWithASCIIString(name, kArguments[k]) != 0) ++k;
-        if (k == all.size()) raise_type("view: unknown argument " + py::cast<std::string>(py::handle(name)));
-        if (k == 0 && count == 1) raise_type("view: the camera is given twice");
-        all[k] = values[count + i];
-    }
-    return {all[0], all[1], all[2], all[3], all[4], all[5], all[6], all[7], all[8], all[9], all[10]};
-}
-
-// World.view as Python calls it: by vectorcall, as pybind11's dispatcher would take most of a small view's time.
 PyObject* view_method(PyObject* self, PyObject* const* values, Py_ssize_t count, PyObject* names) {
-    try {
-        const PyWorld* const world = as<PyWorld>(self);
-        if (!world) raise_type("view: a World is expected");
-        return view(*world, arguments_of(values, count, names)).release().ptr();
-    } catch (py::error_already_set& error) {
-        error.restore();
-    } catch (const py::builtin_exception& error) {
-        error.set_error();
-    } catch (const std::bad_alloc&) {
-        PyErr_NoMemory();
-    } catch (const std::exception& error) {
-        PyErr_SetString(PyExc_RuntimeError, error.what());
-    }
-    return nullptr;
+    return call_method<PyWorld>(self, [&](const PyWorld& world) {
+        const auto all = arguments_of("view", kArguments, 1, values, count, names);
+        return view(world, {all[0], all[1], all[2], all[3], all[4], all[5], all[6], all[7], all[8], all[9], all[10]});
+    });
 }
 
 constexpr const char* kViewText =
@@ -270,10 +242,7 @@ void bind_world_views(py::module_& module, py::class_<PyWorld>& type) {
     PYBIND11_NUMPY_DTYPE(TriangleRecord, object, cluster, triangles);
     bind_one(module);
     bind_many(module);
-    static PyMethodDef method = {"view", reinterpret_cast<PyCFunction>(reinterpret_cast<void (*)()>(&view_method)),
-                                 METH_FASTCALL | METH_KEYWORDS, kViewText};
-    type.attr("view") =
-        py::reinterpret_steal<py::object>(PyDescr_NewMethod(reinterpret_cast<PyTypeObject*>(type.ptr()), &method));
+    add_method(type, "view", &view_method, kViewText);
     type.def(
         "clusters_of",
         [](const PyWorld& world, MeshHandle mesh) {
