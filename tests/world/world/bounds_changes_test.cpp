@@ -318,7 +318,8 @@ TEST_SUITE("world/bounds changes") {
                 CHECK(visible.size() == seen);
             }
             CHECK(tested_fresh > 1000);
-            CHECK(tested <= tested_fresh + tested_fresh / 10);
+            // The last that came are in leaves as wide as nodes until the next rebuild.
+            CHECK(tested <= tested_fresh + tested_fresh / 7);
         }
         CHECK(memory.bytes_in_use() == 0);
     }

@@ -124,7 +124,7 @@ TEST_SUITE("world/storage") {
 
     TEST_CASE("changes of one object after another copy no array of the world at once, so that no update is long") {
         const CountingMemory memory;
-        NearMisses random(65);
+        NearMisses random(67);
         World world({.contacts = false, .rebuild_budget = 0});  // what a rebuild gives back would hide what is copied
         std::vector<ObjectHandle> objects;
         // One in a cube of side 20: few touch.

@@ -13,6 +13,8 @@ namespace crofton::boxtree {
 namespace {
 
 constexpr std::size_t kSubtreeBatch = 32;
+// Of a tree that will grow, each node above leaves has room for one more.
+constexpr BuildGrain kRoomInNodes{.node_leaves = kWidth - 1};
 
 // Makes a subtree's nodes from its leaves.
 void finish_nodes(Structure& structure, NodeId begin, NodeId end, const Topology& topology) {
@@ -79,7 +81,8 @@ Result<BoxTree> BoxTree::build(std::span<const Obb> boxes, std::span<const std::
                 return fail(ErrorCode::out_of_range, item, "box tree: no box for an item to detach");
             if (!items.is_detached(item)) items.set_detached(item, true);
         }
-        Builder builder(centers, items.count_in_leaves(), options.criterion, options.orientation);
+        Builder builder(centers, items.count_in_leaves(), options.criterion, options.orientation,
+                        options.room > 0 ? kRoomInNodes : BuildGrain{});
         const Movers movers{moves, moving.data()};
         if (executor.concurrency() > 1 && items.count_in_leaves() == boxes.size()) {
             builder.prepare_all(items.boxes(), movers, executor);

@@ -40,9 +40,18 @@ void Placement::vacate(ItemId item) {
 }
 
 void Placement::place(ItemId item) {
+    put(item);
+    structure_.settle();
+}
+
+void Placement::put(ItemId item) {
     if (nodes_[0].count == 0) add_child(0, add_leaf() | kLeafBit);
-    const LeafId l = best_leaf(structure_.items_.boxes()[item]);
-    if (leaves_[l].count == kWidth) return split_leaf(l, item);
+    LeafId l = best_leaf(structure_.items_.boxes()[item]);
+    if (leaves_[l].count == kWidth) {
+        const LeafId more = one_leaf_more(leaves_[l].parent);
+        if (more == kNone) return split_leaf(l, item);
+        l = more;
+    }
     Leaf& leaf = leaves_.edit(l);
     const std::uint32_t slot = l * kWidth + leaf.count++;
     structure_.leaf_counts_[l] = static_cast<std::uint8_t>(leaf.count);
@@ -125,6 +134,26 @@ LeafId Placement::best_leaf(const Obb& box) const {
         if (child & kLeafBit) return child & ~kLeafBit;
         n = child;
     }
+}
+
+// Where an item goes whose best leaf is full: of a node as it was built, into one leaf more, while that has room; kNone
+// says to split the full one. Splitting it reads all its items, which lie far from each other, and leaves two halves;
+// until many items have come, one leaf that is as wide as the node costs a query no more than they do.
+LeafId Placement::one_leaf_more(NodeId parent) {
+    const Node& node = nodes_[parent];
+    if (node.only_leaves == 0 || empty_leaf_of(parent) != kNone) return kNone;
+    if (node.count < kWidth && structure_.ranges_[parent].count != 0) {
+        const LeafId fresh = free_leaf();
+        clear(leaves_.edit(fresh));
+        structure_.leaf_radii_[fresh] = kNoRadii;
+        add_child(parent, fresh | kLeafBit);
+        return fresh;
+    }
+    const std::uint32_t last = node.count - 1;
+    for (unsigned lane = 1; lane < last; ++lane)
+        if (node.child[lane] != node.child[0] + lane) return kNone;
+    const LeafId more = node.child[last] & ~kLeafBit;
+    return structure_.leaf_counts_[more] < kWidth ? more : kNone;
 }
 
 // An empty leaf of the node; kNone if it has none.

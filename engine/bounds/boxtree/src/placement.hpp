@@ -23,9 +23,11 @@ class Placement {
         unsigned lane;
     };
 
+    void put(ItemId item);
     [[nodiscard]] unsigned best_lane(const Node& node, const Aabb& box) const;
     [[nodiscard]] LeafId best_leaf(const Obb& box) const;
     LeafId add_leaf();
+    [[nodiscard]] LeafId one_leaf_more(NodeId parent);
     [[nodiscard]] LeafId empty_leaf_of(NodeId parent) const;
     [[nodiscard]] LeafId free_leaf();
     void fetch_items(const ItemId* items) const;

@@ -140,8 +140,11 @@ struct SplitKeys {
     void put(int key, std::size_t first, const Lanes4& values) { std::memcpy(of[key] + first, &values, sizeof values); }
 };
 
-// Blocks that are made at once get room for a part more: each insertion into a full leaf makes one.
-constexpr std::size_t kRoomPart = 12;
+// arrange() gives a block above leaves so many: one more that fills later saves splitting the full ones.
+constexpr std::size_t kArrangedLeaves = kBoxBlock - 1;
+
+// Blocks that are made at once get room for a part more.
+constexpr std::size_t kRoomPart = 16;
 
 // Grows the room by an eighth: what is loaded and then changes a little does not double its memory.
 template <class T>
@@ -209,24 +212,25 @@ void ItemTree::arrange(std::span<const std::uint32_t> order) {
     std::size_t below = order.size(), k = 0;
     for (; k < 2 || below > 1; ++k) {
         Level& level = levels_[k];
-        const std::size_t blocks = std::max<std::size_t>(k > 0 ? 1 : 0, (below + kBoxBlock - 1) / kBoxBlock);
+        const std::size_t most = k == 1 ? kArrangedLeaves : kBoxBlock,
+                          blocks = std::max<std::size_t>(k > 0 ? 1 : 0, (below + most - 1) / most);
         if (blocks > level.bounds.capacity())
             level.reserve(blocks + blocks / kRoomPart + std::min(blocks, 3 * kBoxBlock));
         level.bounds.resize(blocks);
         level.children.assign(blocks * kBoxBlock, 0);
         level.parents.resize(blocks);
-        level.counts.assign(blocks, kBoxBlock);
+        level.counts.assign(blocks, static_cast<std::uint8_t>(most));
         level.is_marked.assign(blocks, 0);
         level.extents.assign(blocks, 0.0f);
         level.free.clear();
         level.marked.clear();
-        if (blocks > 0) level.counts[blocks - 1] = static_cast<std::uint8_t>(below - (blocks - 1) * kBoxBlock);
+        if (blocks > 0) level.counts[blocks - 1] = static_cast<std::uint8_t>(below - (blocks - 1) * most);
         for (std::size_t n = 0; n < below; ++n) {
-            level.children.set(n, k == 0 ? order[n] : static_cast<std::uint32_t>(n));
-            set_place(k, level.children[n], static_cast<std::uint32_t>(n));
+            const std::size_t place = n / most * kBoxBlock + n % most;
+            level.children.set(place, k == 0 ? order[n] : static_cast<std::uint32_t>(n));
+            set_place(k, level.children[place], static_cast<std::uint32_t>(place));
         }
-        for (std::size_t lane = below; lane < blocks * kBoxBlock; ++lane)
-            put_lane(kEmpty, lane % kBoxBlock, level.bounds.edit(lane / kBoxBlock));
+        for (std::size_t block = 0; block < blocks; ++block) clear_unused(k, block);
         below = blocks;
     }
     for (std::size_t above = k; above < kMaxLevels; ++above) levels_[above].clear();
@@ -234,9 +238,9 @@ void ItemTree::arrange(std::span<const std::uint32_t> order) {
     root_ = 0;
 }
 
-void ItemTree::clear_unused(std::size_t leaf) {
-    for (std::size_t lane = levels_[0].counts[leaf]; lane < kBoxBlock; ++lane)
-        put_lane(kEmpty, lane, levels_[0].bounds.edit(leaf));
+void ItemTree::clear_unused(std::size_t level, std::size_t block) {
+    for (std::size_t lane = levels_[level].counts[block]; lane < kBoxBlock; ++lane)
+        put_lane(kEmpty, lane, levels_[level].bounds.edit(block));
 }
 
 void ItemTree::bound_all() {
@@ -313,17 +317,27 @@ void ItemTree::fill(std::size_t level, std::uint32_t block, std::span<const Entr
 
 // Into the block of its level that grows least on the way down.
 void ItemTree::put(const Entry& entry) {
-    if (levels_[level_count_ - 1].counts[root_] == 0) {  // no items: then there are two levels
-        const std::uint32_t leaf = make_block(0);
-        fill(0, leaf, {&entry, 1});
-        levels_[0].extents[leaf] = extent_of(entry.bounds);
-        const Entry first{1, leaf, entry.bounds};
-        return fill(1, root_, {&first, 1});
-    }
-    std::uint32_t block = root_;
-    for (std::size_t k = level_count_ - 1; k > entry.level; --k)
+    if (levels_[level_count_ - 1].counts[root_] == 0) return add_leaf(root_, entry);  // then there are two levels
+    std::uint32_t block = root_, parent = root_;
+    for (std::size_t k = level_count_ - 1; k > entry.level; --k) {
+        parent = block;
         block = levels_[k].children[block * kBoxBlock + lane_for(levels_[k].bounds[block], entry.bounds)];
+    }
+    if (entry.level == 0 && levels_[0].counts[block] == kBoxBlock) {
+        const std::size_t leaves = levels_[1].counts[parent];
+        if (leaves == kArrangedLeaves) return add_leaf(parent, entry);
+        const std::uint32_t last = levels_[1].children[parent * kBoxBlock + leaves - 1];
+        if (leaves == kBoxBlock && levels_[0].counts[last] < kBoxBlock) block = last;
+    }
     add(entry.level, block, entry);
+}
+
+// A leaf of one item.
+void ItemTree::add_leaf(std::uint32_t parent, const Entry& entry) {
+    const std::uint32_t leaf = make_block(0);
+    fill(0, leaf, {&entry, 1});
+    levels_[0].extents[leaf] = extent_of(entry.bounds);
+    add(1, parent, {1, leaf, entry.bounds});
 }
 
 void ItemTree::add(std::size_t level, std::uint32_t block, const Entry& entry) {

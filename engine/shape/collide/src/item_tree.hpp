@@ -24,8 +24,8 @@ class ItemTree {
     [[nodiscard]] bool contains(std::uint32_t item) const { return places_[item] != kNowhere; }
     [[nodiscard]] BoundTree view() const;
 
-    // These items alone, sixteen a leaf in their order. Then put the leaves' bounds, and call bound_all(), and
-    // remember_extents().
+    // These items alone, sixteen a leaf in their order, in nodes with room for another leaf. Then put the leaves'
+    // bounds, and call bound_all(), and remember_extents().
     void arrange(std::span<const std::uint32_t> order);
     [[nodiscard]] std::size_t leaf_count() const { return levels_[0].counts.size(); }  // free ones too
     [[nodiscard]] std::span<const std::uint32_t> items_of(std::size_t leaf) const {
@@ -35,7 +35,7 @@ class ItemTree {
     void begin_bounds() { levels_[0].bounds.edit_all(); }
     [[nodiscard]] BoundBlock& leaf(std::size_t leaf) { return levels_[0].bounds.edit(leaf); }
     // Empties the bounds of the leaf's lanes without items.
-    void clear_unused(std::size_t leaf);
+    void clear_unused(std::size_t leaf) { clear_unused(0, leaf); }
     // Bounds of all blocks anew, from the leaves'.
     void bound_all();
     void remember_extents();
@@ -83,6 +83,8 @@ class ItemTree {
     std::uint32_t make_block(std::size_t level);
     void fill(std::size_t level, std::uint32_t block, std::span<const Entry> entries);
     void put(const Entry& entry);
+    void clear_unused(std::size_t level, std::size_t block);
+    void add_leaf(std::uint32_t parent, const Entry& entry);
     void add(std::size_t level, std::uint32_t block, const Entry& entry);
     void split(std::size_t level, std::uint32_t block, const Entry& entry);
     void grow(std::size_t level, std::uint32_t block, const LaneBounds& bounds);

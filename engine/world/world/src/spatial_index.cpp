@@ -29,7 +29,7 @@ constexpr std::size_t kFewItems = 64;
 // The tree is rebuilt in the background, once such a part of its items has come or gone, a smaller one where nothing
 // comes or goes any more, or has moved within it: what moves stays in its leaf, whose bound grows, and wears the tree
 // more.
-constexpr std::size_t kMembersToRebuild = 16, kMembersToRebuildAtRest = 64, kMovesToRebuild = 64;
+constexpr std::size_t kMembersToRebuild = 16, kMembersToRebuildAtRest = 128, kMovesToRebuild = 64;
 constexpr std::uint32_t kUpdatesAtRest = 16;  // without changes, until nothing is said to come or go any more
 // Work on the new tree for each change of the old one, for an item that comes, goes or moves: the cost of an update
 // follows its changes. Putting an item into the new tree is worth 80, another change 4, building it some 12 an item

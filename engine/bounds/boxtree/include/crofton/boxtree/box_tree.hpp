@@ -31,7 +31,8 @@ struct BuildOptions {
     std::span<const ItemId> detached = {};  // detached from the start: see BoxTree::detach
     // The tree keeps this setting: rebuild_step() chooses new axes, insert() uses the existing ones.
     Orientation orientation = Orientation::aligned;
-    // Takes memory for so many items more, so that the first insertions do not copy the tree's arrays.
+    // Takes memory for so many items more, and leaves room in the nodes above leaves, so that the first insertions copy
+    // no arrays and split few leaves.
     std::size_t room = 0;
 };
 
