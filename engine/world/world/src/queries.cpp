@@ -159,8 +159,9 @@ std::optional<mesh::TriangleHit> raycast_flat(const Ray& ray, const world::Place
 std::optional<ObjectHit> bound_hit(const Ray& ray, const ObjectRef& ref, const world::Object& object, const Obb& box,
                                    double box_t) {
     ObjectHit hit{ref.object, ref.user, box_t};
-    hit.normal = world::normal_of(ray, box, box_t);
-    if (object.kind == BoundKind::sphere) {
+    if (object.kind != BoundKind::sphere) {
+        hit.normal = world::normal_of(ray, box, box_t);
+    } else {
         const Sphere sphere = world::sphere_of(object, box);
         const auto t = world::raycast(ray, sphere);
         if (!t) return std::nullopt;
@@ -203,21 +204,30 @@ std::optional<ObjectHit> World::State::shape_hit(const Ray& ray, std::uint32_t i
 }
 
 std::optional<ObjectHit> World::raycast(const Ray& ray, std::uint32_t layers) const {
-    std::optional<ObjectHit> nearest;
+    std::optional<ObjectHit> nearest;  // but for a box, whose hit is made once it is known to be the nearest
+    std::uint32_t nearest_id = kNoIndex;
+    double nearest_t = 0.0;
     const EvenRay even(ray);
     Ray rest = even.ray;
     state_->visit_along(even.ray, layers, [&](std::uint32_t object, double t) {
-        const auto hit = state_->shape_hit(rest, object, t);
-        const bool is_nearer =
-            hit && (!nearest || hit->t < nearest->t || (hit->t == nearest->t && object < nearest->object.index));
-        if (is_nearer) {
+        std::optional<ObjectHit> hit;
+        if (!state_->is_box(object)) {
+            hit = state_->shape_hit(rest, object, t);
+            if (!hit) return rest.max_t;
+            t = hit->t;
+        }
+        if (nearest_id == kNoIndex || t < nearest_t || (t == nearest_t && object < nearest_id)) {
             nearest = hit;
+            nearest_id = object;
+            nearest_t = t;
             // What lies as far, but for the rounding of t, is asked too: as raycast_all() orders them.
-            rest.max_t = std::min(even.ray.max_t, hit->t * (1.0 + 0x1p-40));
+            rest.max_t = std::min(even.ray.max_t, t * (1.0 + 0x1p-40));
         }
         return rest.max_t;
     });
-    if (nearest) even.restore(*nearest);
+    if (nearest_id == kNoIndex) return std::nullopt;
+    if (!nearest) nearest = state_->shape_hit(even.ray, nearest_id, nearest_t);
+    even.restore(*nearest);
     return nearest;
 }
 

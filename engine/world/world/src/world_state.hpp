@@ -166,6 +166,12 @@ struct World::State {
     [[nodiscard]] bool has_own_shape(std::uint32_t id) const {
         return world::is_region_index(id) ? regions.has_shape(id) : object_shapes.has(id);
     }
+    // Whether the object is its box, so that a ray that meets the one meets the other there.
+    [[nodiscard]] bool is_box(std::uint32_t id) const {
+        if (world::is_region_index(id) || object_shapes.has(id)) return false;
+        const world::Object& object = table.objects[id];
+        return object.instance == kNoIndex && object.kind != BoundKind::sphere;
+    }
     [[nodiscard]] world::PlacedMesh mesh_of_object(std::uint32_t id) const {
         if (world::is_region_index(id)) return regions.mesh(id);
         const world::Object& object = table.objects[id];
