@@ -166,7 +166,7 @@ def plain(name):
 
 
 # Where the header has an array or a struct, and a binding its parts.
-SPLIT = {("C0", "linear"), ("Axis0", "axes"), ("HalfEdge0", "half_edges"), ("child", "part"), ("first_triangle", "triangles"),
+SPLIT = {("C0", "linear"), ("Axis0", "axes"), ("child", "part"), ("first_triangle", "triangles"),
          ("FirstTriangle", "triangles")}
 
 

@@ -133,7 +133,7 @@ Vector<std::uint64_t> seen_from_around(const ClusteredMesh& mesh, DepthRange ran
     return numbers;
 }
 
-TEST_CASE("a mesh that is lent is read in place: the same answers, with an eighth of the memory") {
+TEST_CASE("a mesh that is lent is read in place: the same answers, with a fraction of the memory") {
     oracle::NearMisses random(10);
     for (const bool welded : {true, false})
         for (const std::uint32_t most : {3u, 16u, 64u}) {

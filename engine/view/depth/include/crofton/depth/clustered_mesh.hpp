@@ -50,7 +50,7 @@ class ClusteredMesh {
                                                    const ClusterOptions& options = {});
 
     // Reads positions from the caller's arrays from now on, and drops its copies and the order of triangles: it then
-    // needs about an eighth of the arrays' memory. `indices` are those of permute(), or name vertices at the same
+    // needs a tenth to a fifth of the arrays' memory. `indices` are those of permute(), or name vertices at the same
     // places. The arrays must outlive this object and its copies, and stay as they are.
     //
     // Errors: an index out of range (item = index), or a corner elsewhere than in the mesh that was cut (item = index);
