@@ -189,6 +189,29 @@ TEST_SUITE("world/shape_cast") {
         CHECK(next->time == doctest::Approx((4.0 - 1.75) / 8.0));
     }
 
+    TEST_CASE("sunk in one object, a shape slides along what is flush with it, and meets what is lower or higher") {
+        const convex::Shape sphere = convex::Shape::sphere(1.0).value();
+        const auto ground = [](double x, double top) {
+            return ObjectDescription{.bound = Obb{{x, 0, top - 1.0}, glm::mat3(1.0f), {2, 2, 1}}};
+        };
+        // The ball's center is at the height 0.8. It meets an edge at the height h where its own circle does.
+        for (const double height : {0.0, -0.1, 0.1, -0.19})
+            for (const bool flipped : {false, true}) {
+                World world;
+                ObjectHandle next;
+                for (const bool is_next : {flipped, !flipped})
+                    if (const auto added = world.add(is_next ? ground(4.0, height) : ground(0.0, 0.0)).value(); is_next)
+                        next = added;
+                REQUIRE(world.update().has_value());
+                const auto hit = world.cast(sphere, {glm::dmat3(1.0), {0, 0, 0.8}}, {{4, 0, 0}, {}, {}},
+                                            {.ignore_initial_overlaps = true});
+                REQUIRE(hit.value().has_value() == (height != 0.0));
+                if (height == 0.0) continue;
+                CHECK((*hit)->object == next);
+                CHECK(4.0 * (*hit)->time == doctest::Approx(2.0 - std::sqrt(1.0 - (0.8 - height) * (0.8 - height))));
+            }
+    }
+
     TEST_CASE("along a floor of crates side by side, each an object, nothing is hit") {
         World world;
         for (int x = -6; x <= 6; ++x)

@@ -293,6 +293,17 @@ bool ContactsAt::is_behind(const ShapeAtPose& a, const ShapeAtPose& b, const Con
     return gap - std::max(closing, 0.0) >= std::min(contact.impact.distance, 0.0) - allowed;
 }
 
+// Whether a shape beside the two overlaps by more than the tolerance. What is less deep than it is yet to be met.
+bool ContactsAt::is_left_out(const Contact& contact) const {
+    return !contact.own && contact.impact.distance <= -options_.tolerance;
+}
+
+bool ContactsAt::is_flush_with(const ShapeAtPose& a, const ShapeAtPose& b, const Contact& contact) const {
+    const Pair pair(a, b);
+    const double gap = -pair.extent(contact.impact.normal) - pair.rounding();
+    return std::abs(gap - contact.impact.distance) <= std::max(options_.tolerance, flush_tolerance(a, b));
+}
+
 bool ContactsAt::passes(const ShapeAtPose& first, const Motion& motion_first, const ShapeAtPose& second,
                         const Motion& motion_second, bool flipped) const {
     if (is_half_space(first) || is_half_space(second)) return false;
@@ -301,6 +312,7 @@ bool ContactsAt::passes(const ShapeAtPose& first, const Motion& motion_first, co
     for (std::size_t i = 0; i < count_; ++i) {
         const Contact& contact = at(i);
         if (!contact.slides || contact.is_covered || !is_behind(a, b, contact, 0.0)) continue;
+        if (is_left_out(contact) && !is_flush_with(a, b, contact)) continue;
         const Flight flight(a, motion_a, b, motion_b);
         if (is_behind(a, b, contact, flight.closing(contact.impact.normal)(options_.duration))) return true;
     }

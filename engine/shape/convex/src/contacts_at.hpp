@@ -76,6 +76,8 @@ class ContactsAt {
     void count_behind();
     [[nodiscard]] bool is_behind(const ShapeAtPose& a, const ShapeAtPose& b, const Contact& contact,
                                  double closing) const;
+    [[nodiscard]] bool is_left_out(const Contact& contact) const;
+    [[nodiscard]] bool is_flush_with(const ShapeAtPose& a, const ShapeAtPose& b, const Contact& contact) const;
     [[nodiscard]] bool is_covered_by(const Contact& contact, const Contact& by) const;
     [[nodiscard]] bool is_told_by(const Contact& contact, const Contact& by) const;
 
