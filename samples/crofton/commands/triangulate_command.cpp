@@ -96,6 +96,9 @@ void print_table(const TriangulateOptions& options, const Totals& t) {
     if (t.out_of_memory)
         std::printf("%zu %s the limit of memory before that of time: --memory-limit %.0f is more\n", t.out_of_memory,
                     t.out_of_memory == 1 ? "polygon reached" : "polygons reached", 4.0 * std::max(options.memory, 1.0));
+    else if (t.optimal < t.polygons && options.method == "minimum-weight" && !options.is_work_given &&
+             !std::isfinite(options.seconds))
+        std::printf("Larger limits may prove more: --memory-limit, and --work-limit or --time-limit\n");
     if (t.refused) std::printf("%zu %s refused\n", t.refused, t.refused == 1 ? "polygon was" : "polygons were");
 }
 

@@ -157,6 +157,8 @@ TEST_SUITE("cli/triangulate") {
         CHECK(full.status == 0);
         CHECK(full.out.find("1 polygon reached the limit of memory before that of time: --memory-limit 4 is more") !=
               std::string::npos);
+        const CliRun by_default = run_cli("triangulate '" + scratch().file("late.poly") + "' --memory-limit 1");
+        CHECK(by_default.out.find("Larger limits may prove more: --memory-limit") != std::string::npos);
     }
 
     TEST_CASE("a time limit is the only limit, and work is not limited as well") {
