@@ -30,7 +30,7 @@ struct TriangulateOptions {
     std::string file, method = "minimum-weight", map, json, svg, out;
     double seconds = std::numeric_limits<double>::infinity();
     double work = 0.0;       // in millions of steps, where it is given
-    double memory = 1024.0;  // MiB
+    double memory = 2048.0;  // MiB
     double tolerance = -1.0, attribute_tolerance = 1e-4;
     bool no_indices = false, has_tolerance = false, is_mesh_option_given = false, is_work_given = false;
     ReadOptions read;

@@ -54,7 +54,7 @@ const std::vector<std::string> kPlain = {"# C:\\models\\",
 }  // namespace
 
 TEST_SUITE("assets/obj_lines") {
-    TEST_CASE("faces may come before what they name, wherever the vertices are; negative numbers count back") {
+    TEST_CASE("faces may come before what they name, wherever the vertices are, and negative numbers count back") {
         std::string plain, faces_first, vertices_between, dangling;
         const auto is_face_or_part = [](const std::string& line) {
             return line[0] == 'f' || line[0] == 'o' || line[0] == 'g' || line[0] == 'u';
