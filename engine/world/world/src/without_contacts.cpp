@@ -12,7 +12,7 @@ ContactFinder::ContactFinder(const WorldOptions& options)
     : options_(options), broadphase_({.exact_boxes = true, .max_pairs = options.max_pairs}) {}
 
 Result<void> ContactFinder::update(const ObjectTable&, SpatialIndex&, const scene::Scene&, Shapes&, const ObjectShapes&,
-                                   const PairChanges&, Executor&) {
+                                   const PairChanges&, ShapeToucher, Executor&) {
     return fail(ErrorCode::unsupported, kNoItem, "World::update: this build of the library finds no pairs");
 }
 void ContactFinder::stay() {}
