@@ -117,10 +117,13 @@ std::size_t EdgeRule::slot_of(const glm::dvec3& vertex) const {
     return static_cast<std::size_t>(hash >> 32) & (first_.size() - 1);
 }
 
-bool EdgeRule::is_in_box(const glm::dvec3& point) const {
+bool EdgeRule::is_within_search(const glm::dvec3& point) const {
     const glm::dvec3 p = Pair::local(shape_->pose.rotation, point - shape_->pose.translation);
     const Aabb& box = shape_->shape.bounds();
-    return p == (glm::clamp)(p, box.min, box.max);
+    const double radius = shape_->shape.radius();
+    const glm::dvec3 core = (glm::max)(box.half_extents() - radius, glm::dvec3(0.0)), offset = p - box.center();
+    const glm::dvec3 way = offset - (glm::clamp)(offset, -core, core);
+    return glm::dot(way, way) <= radius * radius;
 }
 
 bool EdgeRule::points_into_neighbor(std::uint32_t index, const NearSurface& surface, const glm::dvec3& normal,
@@ -136,7 +139,7 @@ bool EdgeRule::points_into_neighbor(std::uint32_t index, const NearSurface& surf
         if (other.surface == own.surface && rises_beside(other.corners)) return true;
     }
     const glm::dvec3 on = stand.on.count == 1 ? surface.pose.rotation * stand.vertex() : touch;
-    return !is_in_box(on + surface.pose.translation) && any_around(surface, stand.vertex(), rises_beside);
+    return !is_within_search(on + surface.pose.translation) && any_around(surface, stand.vertex(), rises_beside);
 }
 
 namespace {

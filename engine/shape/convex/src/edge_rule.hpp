@@ -22,10 +22,11 @@ struct NearTriangle {
 // above them. Triangles near the shape that share a vertex are found by a hash of its place, made when first asked for.
 // A neighbor need not be near the shape: where a shape dips into a triangle beside one of its edges, the way out may
 // lead across the edge, though the shape ends before it. So if no listed neighbor rises, and the point of touch is not
-// within the shape's box, the surface is asked for all of them.
+// within what was searched, the surface is asked for all of them.
 class EdgeRule {
   public:
-    // For these triangles, all that touch the shape's box; both stay unchanged until the next call.
+    // For these triangles, all that touch the box around the shape's core, grown by its radius. Both stay unchanged until
+    // the next call.
     void start(std::span<const NearTriangle> triangles, const ShapeAtPose& shape);
     // Whether a triangle that shares the vertices of `index` that are farthest along the normal rises above them. The
     // point of touch lies on the triangle, around the surface's origin.
@@ -47,7 +48,7 @@ class EdgeRule {
 
   private:
     void list_corners();
-    [[nodiscard]] bool is_in_box(const glm::dvec3& point) const;
+    [[nodiscard]] bool is_within_search(const glm::dvec3& point) const;
     void find_side_of_piece(std::uint32_t first, const glm::dvec3& point);
     void add_neighbors_to_piece(std::uint32_t index);
     [[nodiscard]] std::size_t slot_of(const glm::dvec3& vertex) const;
