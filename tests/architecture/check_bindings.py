@@ -166,7 +166,7 @@ def plain(name):
 
 
 # Where the header has an array or a struct, and a binding its parts.
-SPLIT = {("C0", "linear"), ("Axis0", "axes"), ("child", "part"), ("first_triangle", "triangles"),
+SPLIT = {("C0", "linear"), ("Axis0", "axes"), ("HalfEdge0", "half_edges"), ("child", "part"), ("first_triangle", "triangles"),
          ("FirstTriangle", "triangles")}
 
 
@@ -299,7 +299,7 @@ SHARP_KINDS = {"double": "f64", "float": "f32", "ulong": "u64", "uint": "u32", "
                "UIntPtr": "usize", "IntPtr": "ptr"}
 SHARP_NAMES = {"Obb": "box", "ObjectHandle": "object", "NodeHandle": "node", "MeshHandle": "world_mesh",
                "ObjectData": "object_description", "MeshData": "mesh_data", "ClosestData": "closest_object",
-               "ContactData": "object_contact", "PictureData": "picture_view", "ShapeMeshData": "mesh"}
+               "ContactData": "object_contact", "PictureData": "picture_view", "PlainMeshData": "mesh"}
 SHARP_OWN = {"Vector3", "Float3", "Float4", "Edge"}  # three or four numbers each, where the headers have arrays
 
 

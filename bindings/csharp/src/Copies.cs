@@ -19,6 +19,30 @@ namespace Crofton {
         internal Native.PlacedData Of(Placed placed) {
             return new Native.PlacedData { Shape = Held(placed.Given.Handle), Pose = Copied(placed.Pose) };
         }
+        internal Native.PlainMeshData Of(float[] positions, uint[] indices) {
+            UIntPtr count = Triples(positions, "positions");
+            Library.NotNull(indices, "indices");
+            return new Native.PlainMeshData {
+                Size = Native.SizeOf<Native.PlainMeshData>(), Positions = Pinned(positions), VertexCount = count, Indices = Pinned(indices),
+                IndexCount = (UIntPtr)indices.Length
+            };
+        }
+        // A mesh for a World or a Region; indices may be null.
+        internal Native.MeshData Of(RegionMesh mesh) {
+            Native.MeshData data = Native.crofton_default_mesh_data();
+            data.PositionCount = Triples(mesh.Positions, "positions");
+            data.Positions = Pinned(mesh.Positions);
+            if (mesh.Indices != null) {
+                if (mesh.Indices.Length == 0) throw new ArgumentException("there are none, so there is no triangle", "indices");
+                data.Indices = Pinned(mesh.Indices);
+                data.IndexCount = (UIntPtr)mesh.Indices.Length;
+            }
+            data.Triangles = mesh.Triangles ? 1u : 0u;
+            data.Clusters = mesh.Clusters ? 1u : 0u;
+            data.OneSided = mesh.OneSided ? 1u : 0u;
+            if (mesh.Precut != null) data.Precut = Held(mesh.Precut.Handle);
+            return data;
+        }
         internal Native.QueryShapeData Probe(Placed placed) { return new Native.QueryShapeData { Kind = Native.QueryShapeShape, Shape = Of(placed) }; }
         internal Native.ViewRequestData Of(ViewRequest request) {
             Native.ViewRequestData data = Native.crofton_default_view_request();
@@ -30,15 +54,7 @@ namespace Crofton {
             if (request.Volume != null) data.Volume = Copied(request.Volume.Data);
             if (request.Occlusion != null) data.Occlusion = Copied(request.Occlusion.Data());
             if (request.Limits != null) data.Limits = Copied(Of(request.Limits));
-            if (request.Picture != null) {
-                Native.PictureData picture = Native.crofton_default_picture_view();
-                picture.Width = request.Picture.Width;
-                picture.Height = request.Picture.Height;
-                picture.Depth = (uint)request.Picture.Depth;
-                picture.Samples = request.Picture.Samples;
-                picture.WorkLimit = request.Picture.WorkLimit;
-                data.Picture = Copied(picture);
-            }
+            if (request.Picture != null) data.Picture = Copied(request.Picture.Data());
             if (request.Receivers != null) data.Receivers = Copied(Of(request.Receivers));
             if (request.CandidateMask != null) {
                 data.CandidateMask = Pinned(request.CandidateMask);
@@ -86,6 +102,13 @@ namespace Crofton {
             memory.Add(copy);
             Marshal.StructureToPtr(data, copy, false);
             return copy;
+        }
+        internal IntPtr CopiedAll<T>(T[] data) where T : struct {
+            int size = Marshal.SizeOf(typeof(T));
+            IntPtr first = Marshal.AllocHGlobal(Math.Max(1, size * data.Length));
+            memory.Add(first);
+            for (int i = 0; i < data.Length; ++i) Marshal.StructureToPtr(data[i], new IntPtr(first.ToInt64() + (long)i * size), false);
+            return first;
         }
         internal IntPtr Held(SafeHandle handle) {
             bool isHeld = false;

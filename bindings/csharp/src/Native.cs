@@ -91,10 +91,39 @@ namespace Crofton {
         [StructLayout(LayoutKind.Sequential)]
         internal struct MeshInfo {
             public UIntPtr Size, OccluderCount;
+            public ClustersData Clusters;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct ClustersData {
             public IntPtr Clusters;
             public UIntPtr ClusterCount;
             public IntPtr TriangleOrder;
             public UIntPtr TriangleCount;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct DepthObjectData {
+            public UIntPtr Size;
+            public IntPtr Mesh;
+            [MarshalAs(UnmanagedType.ByValArray, SizeConst = 16)] public float[] ToClip;
+            public uint OneSided, Hides;
+            public float PositionError;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct DepthReceiverData {
+            public IntPtr Mesh;
+            [MarshalAs(UnmanagedType.ByValArray, SizeConst = 16)] public float[] ToMap;
+            public uint Solid;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct DepthReceiversData {
+            public UIntPtr Size;
+            public IntPtr Seen, Objects;
+            public UIntPtr ObjectCount;
+            public double Radius;
         }
 
         [StructLayout(LayoutKind.Sequential)]
@@ -111,7 +140,7 @@ namespace Crofton {
         internal const uint CastMiss = 0, CastUnresolved = 2;
 
         [StructLayout(LayoutKind.Sequential)]
-        internal struct ShapeMeshData {
+        internal struct PlainMeshData {
             public UIntPtr Size;
             public IntPtr Positions;
             public UIntPtr VertexCount;
@@ -409,6 +438,20 @@ namespace Crofton {
         [DllImport(Library)] internal static extern int crofton_shapes_cast(ref PlacedData a, ref Motion motionA, ref PlacedData b, ref Motion motionB, ref CastOptionsData options, ref ImpactData impact);
         [DllImport(Library)] internal static extern int crofton_shape_raycast(ref PlacedData shape, ref Ray ray, ref ShapeRayHitData hit);
 
+        [DllImport(Library)] internal static extern DepthObjectData crofton_default_depth_object();
+        [DllImport(Library)] internal static extern DepthReceiversData crofton_default_depth_receivers();
+        [DllImport(Library)] internal static extern int crofton_clustered_mesh_create(ref PlainMeshData mesh, uint maxTriangles, out ClusteredMeshHandle clustered);
+        [DllImport(Library)] internal static extern int crofton_clustered_mesh_destroy(IntPtr clustered);
+        [DllImport(Library)] internal static extern int crofton_clustered_mesh_get(ClusteredMeshHandle clustered, out ClustersData clusters);
+        [DllImport(Library)] internal static extern int crofton_clustered_mesh_box(ClusteredMeshHandle clustered, UIntPtr cluster, out ClusterBox box);
+        [DllImport(Library)] internal static extern int crofton_clustered_mesh_serialise(ClusteredMeshHandle clustered, [Out] byte[] bytes, UIntPtr capacity, out UIntPtr count);
+        [DllImport(Library)] internal static extern int crofton_clustered_mesh_deserialise(byte[] bytes, UIntPtr count, out ClusteredMeshHandle clustered);
+        [DllImport(Library)] internal static extern int crofton_depth_culler_create(out DepthCullerHandle culler);
+        [DllImport(Library)] internal static extern int crofton_depth_culler_destroy(IntPtr culler);
+        [DllImport(Library)] internal static extern int crofton_depth_culler_find_visible(DepthCullerHandle culler, DepthObjectData[] objects, UIntPtr count, ref PictureData picture, IntPtr jobs, out IntPtr clusters, out UIntPtr clusterCount, IntPtr statistics);
+        [DllImport(Library)] internal static extern int crofton_depth_culler_find_casters(DepthCullerHandle culler, DepthObjectData[] objects, UIntPtr count, ref PictureData map, ref DepthReceiversData receivers, IntPtr jobs, out IntPtr clusters, out UIntPtr clusterCount, IntPtr statistics);
+        [DllImport(Library)] internal static extern int crofton_depth_culler_nearness(DepthCullerHandle culler, uint x, uint y, out float nearness);
+
         [DllImport(Bake)] internal static extern int crofton_triangulator_create(out TriangulatorHandle triangulator);
         [DllImport(Bake)] internal static extern int crofton_triangulator_destroy(IntPtr triangulator);
         [DllImport(Bake)] internal static extern int crofton_triangulate(TriangulatorHandle triangulator, ref PolygonData polygon, uint method, ref TriangulationData result);
@@ -490,6 +533,12 @@ namespace Crofton {
     }
     internal sealed class FoundHandle : OwnedHandle {
         protected override int Destroy(IntPtr raw) { return Native.crofton_found_destroy(raw); }
+    }
+    internal sealed class ClusteredMeshHandle : OwnedHandle {
+        protected override int Destroy(IntPtr raw) { return Native.crofton_clustered_mesh_destroy(raw); }
+    }
+    internal sealed class DepthCullerHandle : OwnedHandle {
+        protected override int Destroy(IntPtr raw) { return Native.crofton_depth_culler_destroy(raw); }
     }
     internal sealed class TriangulatorHandle : OwnedHandle {
         protected override int Destroy(IntPtr raw) { return Native.crofton_triangulator_destroy(raw); }

@@ -198,6 +198,16 @@ namespace Crofton {
         public uint Samples = 1;
         /// <summary>0 for no limit. Otherwise a number of clusters that are tested and of triangles that are drawn, together; what is left after that is listed whole unless its box is hidden.</summary>
         public ulong WorkLimit;
+
+        internal Native.PictureData Data() {
+            Native.PictureData data = Native.crofton_default_picture_view();
+            data.Width = Width;
+            data.Height = Height;
+            data.Depth = (uint)Depth;
+            data.Samples = Samples;
+            data.WorkLimit = WorkLimit;
+            return data;
+        }
     }
 
     /// <summary>What a camera sees, for the view of a light.</summary>
@@ -221,25 +231,6 @@ namespace Crofton {
         /// <summary>Bit i % 64 of word i / 64 says whether the object with index i was drawn before; its limits are then Hysteresis times as long.</summary>
         public ulong[] DrawnBefore;
         public double Hysteresis = 1;
-    }
-
-    /// <summary>A cluster with triangles to draw: bit k of Triangles stands for triangle FirstTriangle + k of the cluster.</summary>
-    [StructLayout(LayoutKind.Sequential)]
-    public struct VisibleCluster {
-        public uint Object, Cluster;
-        public ulong Triangles;
-    }
-
-    /// <summary>A group of neighbouring triangles.</summary>
-    [StructLayout(LayoutKind.Sequential)]
-    public struct Cluster {
-        public uint FirstTriangle, TriangleCount;
-    }
-
-    /// <summary>A mesh cut into clusters. Permute the index buffer that you draw by TriangleOrder: each cluster is then one range.</summary>
-    public sealed class Clusters {
-        public Cluster[] All;
-        public uint[] TriangleOrder;
     }
 
     /// <summary>The request of a view.</summary>

@@ -35,6 +35,10 @@ namespace Crofton {
         public uint[] Indices;
         /// <summary>Views with a picture list the mesh's triangles. OneSided: back faces are not drawn.</summary>
         public bool Clusters, OneSided;
+        /// <summary>With Clusters: those of this mesh, cut before.</summary>
+        public ClusteredMesh Precut;
+        /// <summary>False: queries and contacts test the mesh's box only, which saves memory and time.</summary>
+        public bool Triangles = true;
     }
 
     /// <summary>Many objects that do not move. Prepare it on any thread and attach it to a World, where that takes microseconds.</summary>
@@ -71,13 +75,7 @@ namespace Crofton {
                 for (int i = 0; i < meshes.Length; ++i) {
                     Library.NotNull(meshes[i], "meshes");
                     Library.NotNull(meshes[i].Indices, "meshes");
-                    described[i] = Native.crofton_default_mesh_data();
-                    described[i].PositionCount = Copies.Triples(meshes[i].Positions, "meshes");
-                    described[i].Positions = memory.Pinned(meshes[i].Positions);
-                    described[i].Indices = memory.Pinned(meshes[i].Indices);
-                    described[i].IndexCount = (UIntPtr)meshes[i].Indices.Length;
-                    described[i].Clusters = meshes[i].Clusters ? 1u : 0u;
-                    described[i].OneSided = meshes[i].OneSided ? 1u : 0u;
+                    described[i] = memory.Of(meshes[i]);
                 }
                 Native.RegionOptionsData options = Native.crofton_default_region_options();
                 options.Meshes = memory.Pinned(described);

@@ -118,13 +118,8 @@ namespace Crofton {
         /// <summary>The surface of triangles: x, y, z of each vertex, three indices per triangle. frontOnly: contacts push to the front only, and
         /// casts from behind pass.</summary>
         public static Shape Mesh(float[] positions, uint[] indices, bool frontOnly = false) {
-            UIntPtr count = Copies.Triples(positions, "positions");
-            Library.NotNull(indices, "indices");
             return new Shape(Native.ShapeMesh, (ref Native.ShapeDescriptionData d, Copies memory) => {
-                d.Mesh = memory.Copied(new Native.ShapeMeshData {
-                    Size = Native.SizeOf<Native.ShapeMeshData>(), Positions = memory.Pinned(positions), VertexCount = count,
-                    Indices = memory.Pinned(indices), IndexCount = (UIntPtr)indices.Length
-                });
+                d.Mesh = memory.Copied(memory.Of(positions, indices));
                 d.FrontOnly = frontOnly ? 1u : 0u;
             });
         }

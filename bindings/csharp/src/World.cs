@@ -93,25 +93,21 @@ namespace Crofton {
         public void Dispose() { Change(Handle.Dispose); }
 
         /// <summary>Adds a mesh in its own frame: x, y, z of each vertex; three indices per triangle, counter-clockwise seen
-        /// from outside, or null if each three vertices are a triangle. Copies both.</summary>
-        public MeshHandle AddMesh(float[] positions, uint[] indices) { return AddMesh(positions, indices, false); }
-        /// <summary>The same; with clusters, views with a picture list the mesh's triangles. oneSided: back faces are not drawn.</summary>
-        public MeshHandle AddMesh(float[] positions, uint[] indices, bool clusters, bool oneSided = false) {
+        /// from outside, or null if each three vertices are a triangle. Copies both. With clusters, views with a picture list the mesh's
+        /// triangles; oneSided: back faces are not drawn; precut: its clusters, cut before. Without triangles, queries and contacts test
+        /// the mesh's box only, which saves memory and time.</summary>
+        public MeshHandle AddMesh(float[] positions, uint[] indices, bool clusters = false, bool oneSided = false, ClusteredMesh precut = null, bool triangles = true) {
             MeshHandle mesh = default(MeshHandle);
-            WithMesh(positions, indices, data => {
-                data.Clusters = Flag(clusters);
-                data.OneSided = Flag(oneSided);
-                return Native.crofton_world_add_mesh(Handle, ref data, out mesh);
-            });
+            WithMesh(positions, indices, clusters, oneSided, precut, triangles, data => Native.crofton_world_add_mesh(Handle, ref data, out mesh));
             return mesh;
         }
-        /// <summary>Replaces a mesh in all objects that use it.</summary>
-        public void ReplaceMesh(MeshHandle mesh, float[] positions, uint[] indices) {
-            WithMesh(positions, indices, data => Native.crofton_world_replace_mesh(Handle, mesh, ref data));
+        /// <summary>Replaces a mesh in all objects that use it. The rest as in AddMesh.</summary>
+        public void ReplaceMesh(MeshHandle mesh, float[] positions, uint[] indices, bool clusters = false, bool oneSided = false, ClusteredMesh precut = null, bool triangles = true) {
+            WithMesh(positions, indices, clusters, oneSided, precut, triangles, data => Native.crofton_world_replace_mesh(Handle, mesh, ref data));
         }
         /// <summary>Moves the vertices of a mesh that deforms: as many as before.</summary>
         public void SetVertices(MeshHandle mesh, float[] positions) {
-            WithMesh(positions, null, data => Native.crofton_world_set_vertices(Handle, mesh, ref data));
+            WithMesh(positions, null, false, false, null, true, data => Native.crofton_world_set_vertices(Handle, mesh, ref data));
         }
         /// <summary>Removes a mesh. Error: objects use it.</summary>
         public void RemoveMesh(MeshHandle mesh) { Library.Check(Native.crofton_world_remove_mesh(Handle, mesh)); }
@@ -246,11 +242,7 @@ namespace Crofton {
         public Clusters ClustersOf(MeshHandle mesh) {
             return Read(() => {
                 Native.MeshInfo info = Info(mesh);
-                if (info.ClusterCount == UIntPtr.Zero) return null;
-                return new Clusters {
-                    All = Library.ToArray<Cluster>(info.Clusters, info.ClusterCount),
-                    TriangleOrder = Library.ToArray<uint>(info.TriangleOrder, info.TriangleCount)
-                };
+                return info.Clusters.ClusterCount == UIntPtr.Zero ? null : ClusteredMesh.Of(info.Clusters);
             });
         }
         Native.ObjectInfo Info(ObjectHandle handle) {
@@ -311,19 +303,11 @@ namespace Crofton {
             }
         }
 
-        static void WithMesh(float[] positions, uint[] indices, Func<Native.MeshData, int> call) {
-            UIntPtr count = Copies.Triples(positions, "positions");
-            if (indices != null && indices.Length == 0) throw new ArgumentException("there are none, so there is no triangle", "indices");
-            using (var memory = new Copies()) {
-                Native.MeshData data = Native.crofton_default_mesh_data();
-                data.Positions = memory.Pinned(positions);
-                data.PositionCount = count;
-                if (indices != null) {
-                    data.Indices = memory.Pinned(indices);
-                    data.IndexCount = (UIntPtr)indices.Length;
-                }
-                Library.Check(call(data));
-            }
+        static void WithMesh(float[] positions, uint[] indices, bool clusters, bool oneSided, ClusteredMesh precut, bool triangles, Func<Native.MeshData, int> call) {
+            using (var memory = new Copies())
+                Library.Check(call(memory.Of(new RegionMesh {
+                    Positions = positions, Indices = indices, Clusters = clusters, OneSided = oneSided, Precut = precut, Triangles = triangles
+                })));
         }
     }
 }

@@ -137,7 +137,9 @@ std::string in_python(std::string_view message) {
 
 }  // namespace
 
+// Both also work within calls that have released the lock.
 void raise(const Error& error) {
+    const py::gil_scoped_acquire lock;
     if (error.code == ErrorCode::out_of_memory) {
         PyErr_SetString(PyExc_MemoryError, error.message.c_str());
         throw py::error_already_set();
@@ -158,6 +160,7 @@ void raise(const Error& error) {
 }
 
 void raise_type(const std::string& message) {
+    const py::gil_scoped_acquire lock;
     PyErr_SetString(PyExc_TypeError, message.c_str());
     throw py::error_already_set();
 }

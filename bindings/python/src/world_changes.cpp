@@ -42,6 +42,23 @@ MeshDescription description_of(const PyMesh& mesh) {
             .indices = std::span<const std::uint32_t>(triangles.indices)};
 }
 
+// What add_mesh and replace_mesh are given; calls f with its description.
+template <class F>
+auto with_mesh(const py::handle& positions, const py::object& indices, bool triangles, bool occluders, bool clusters,
+               bool one_sided, const std::shared_ptr<const depth::ClusteredMesh>& precut, F&& f) {
+    const PyMesh* const mesh = as<PyMesh>(positions);
+    if (mesh != nullptr && !indices.is_none()) raise_type("indices: a Mesh has its own");
+    std::optional<MeshArrays> arrays;
+    if (mesh == nullptr) arrays.emplace(positions, indices);
+    MeshDescription description = mesh != nullptr ? description_of(*mesh) : arrays->description();
+    description.triangles = triangles;
+    description.occluders = occluders;
+    description.clusters = clusters;
+    description.one_sided = one_sided;
+    description.precut = precut.get();
+    return f(description);
+}
+
 template <class H>
 H handle_or_null(const py::object& given, const char* name) {
     if (given.is_none()) return {};
@@ -80,7 +97,8 @@ py::array add_all(PyWorld& to, std::size_t count, const py::object& users, F&& d
 
 ObjectHandle add(PyWorld& to, const py::object& mesh, const py::object& node, const py::object& transform,
                  const py::object& box, const py::object& sphere, const py::object& aligned, const SharedShape& shape,
-                 std::uint64_t user, std::uint32_t layers, std::uint32_t collides_with, bool occludes) {
+                 std::uint64_t user, std::uint32_t layers, std::uint32_t collides_with, bool occludes,
+                 bool only_occludes) {
     ObjectDescription description;
     if (shape) description.shape = &*shape->shape;
     description.mesh = handle_or_null<MeshHandle>(mesh, "mesh");
@@ -91,6 +109,7 @@ ObjectHandle add(PyWorld& to, const py::object& mesh, const py::object& node, co
     description.layers = layers;
     description.collides_with = collides_with;
     description.occludes = occludes;
+    description.only_occludes = only_occludes;
     return value_of(to.change([&](World& world) {
         auto added = world.add(description);
         if (added) to.keep(*added, shape);
@@ -166,23 +185,32 @@ void bind_world_changes(py::class_<PyWorld>& type) {
     type.def(
             "add_mesh",
             [](PyWorld& world, const py::handle& positions, const py::object& indices, bool triangles, bool occluders,
-               bool clusters, bool one_sided) {
-                const PyMesh* const mesh = as<PyMesh>(positions);
-                if (mesh != nullptr && !indices.is_none()) raise_type("indices: a Mesh has its own");
-                std::optional<MeshArrays> arrays;
-                if (mesh == nullptr) arrays.emplace(positions, indices);
-                MeshDescription description = mesh != nullptr ? description_of(*mesh) : arrays->description();
-                description.triangles = triangles;
-                description.occluders = occluders;
-                description.clusters = clusters;
-                description.one_sided = one_sided;
-                return value_of(world.change([&](World& w) { return w.add_mesh(description); }));
+               bool clusters, bool one_sided, const std::shared_ptr<const depth::ClusteredMesh>& precut) {
+                return with_mesh(positions, indices, triangles, occluders, clusters, one_sided, precut,
+                                 [&](const MeshDescription& description) {
+                                     return value_of(world.change([&](World& w) { return w.add_mesh(description); }));
+                                 });
             },
             py::arg("positions"), py::arg("indices") = py::none(), py::kw_only(), py::arg("triangles") = true,
             py::arg("occluders") = false, py::arg("clusters") = false, py::arg("one_sided") = false,
+            py::arg("precut") = nullptr,
             "Adds a mesh: a Mesh, or points (n, 3) and indices, three per triangle. With occluders it hides what is "
             "behind it. With clusters, views with a picture list its triangles; `one_sided` says that back faces are "
-            "not drawn.")
+            "not drawn; `precut` is its ClusteredMesh, if it was cut before.")
+        .def(
+            "replace_mesh",
+            [](PyWorld& world, MeshHandle handle, const py::handle& positions, const py::object& indices,
+               bool triangles, bool occluders, bool clusters, bool one_sided,
+               const std::shared_ptr<const depth::ClusteredMesh>& precut) {
+                with_mesh(positions, indices, triangles, occluders, clusters, one_sided, precut,
+                          [&](const MeshDescription& description) {
+                              value_of(world.change([&](World& w) { return w.replace_mesh(handle, description); }));
+                          });
+            },
+            py::arg("mesh"), py::arg("positions"), py::arg("indices") = py::none(), py::kw_only(),
+            py::arg("triangles") = true, py::arg("occluders") = false, py::arg("clusters") = false,
+            py::arg("one_sided") = false, py::arg("precut") = nullptr,
+            "Replaces a mesh in all objects that have it; the rest as in add_mesh.")
         .def(
             "set_vertices",
             [](PyWorld& world, MeshHandle mesh, const py::handle& positions) {
@@ -204,8 +232,57 @@ void bind_world_changes(py::class_<PyWorld>& type) {
              py::arg("transform") = py::none(), py::arg("box") = py::none(), py::arg("sphere") = py::none(),
              py::arg("aligned") = py::none(), py::arg("shape") = py::none(), py::arg("user") = 0,
              py::arg("layers") = ~0u, py::arg("collides_with") = ~0u, py::arg("occludes") = true,
+             py::arg("only_occludes") = false,
              "Adds an object: a mesh, placed by `transform` under `node` or in the world; or a bound, which is a Box, "
-             "a sphere (center, radius) or an aligned box (low, high); or a Shape, alone or with one of them.")
+             "a sphere (center, radius) or an aligned box (low, high); or a Shape, alone or with one of them. "
+             "`only_occludes`: no answer contains it, but its mesh's occluders hide others.")
+        .def(
+            "set_bound",
+            [](PyWorld& world, ObjectHandle object, const py::object& box, const py::object& sphere,
+               const py::object& aligned) {
+                const Bound bound = bound_of(box, sphere, aligned);
+                value_of(world.change([&](World& w) { return w.set_bound(object, bound); }));
+            },
+            py::arg("object"), py::kw_only(), py::arg("box") = py::none(), py::arg("sphere") = py::none(),
+            py::arg("aligned") = py::none(), "Sets the bound of an object that was added with one; see also set_boxes.")
+        .def(
+            "set_mesh",
+            [](PyWorld& world, const py::object& objects, MeshHandle mesh) {
+                for_objects(world, objects, [mesh](World& w, ObjectHandle handle) { return w.set_mesh(handle, mesh); });
+            },
+            py::arg("objects"), py::arg("mesh"),
+            "Sets the mesh of objects that have one. Bad items as in set_transforms.")
+        .def(
+            "set_user",
+            [](PyWorld& world, ObjectHandle object, std::uint64_t user) {
+                value_of(world.change([&](World& w) { return w.set_user(object, user); }));
+            },
+            py::arg("object"), py::arg("user"), "Sets the number that answers return with the object.")
+        .def(
+            "set_collides_with",
+            [](PyWorld& world, const py::object& objects, std::uint32_t layers) {
+                for_objects(world, objects,
+                            [layers](World& w, ObjectHandle handle) { return w.set_collides_with(handle, layers); });
+            },
+            py::arg("objects"), py::arg("layers"),
+            "Sets the layers that the objects collide with. Bad items as in set_transforms.")
+        .def(
+            "set_occludes",
+            [](PyWorld& world, const py::object& objects, bool occludes) {
+                for_objects(world, objects,
+                            [occludes](World& w, ObjectHandle handle) { return w.set_occludes(handle, occludes); });
+            },
+            py::arg("objects"), py::arg("occludes"),
+            "Sets whether objects with a mesh hide others; not transparent ones. Bad items as in set_transforms.")
+        .def(
+            "set_parent",
+            [](PyWorld& world, NodeHandle node, const py::object& parent) {
+                const auto above = handle_or_null<NodeHandle>(parent, "parent");
+                value_of(world.change([&](World& w) { return w.set_parent(node, above); }));
+            },
+            py::arg("node"), py::arg("parent"),
+            "Moves a node below another, or with None to the top. Error: the parent is the node itself or one below "
+            "it.")
         .def("set_shape", &set_shape, py::arg("object"), py::arg("shape"),
              "Gives an object a Shape, which queries and contacts use instead of its mesh or bound. None removes it.")
         .def("add_boxes", &add_boxes, py::arg("boxes"), py::kw_only(), py::arg("users") = py::none(),
@@ -248,6 +325,13 @@ void bind_world_changes(py::class_<PyWorld>& type) {
             },
             py::arg("objects"), py::arg("hidden"),
             "Hides or shows objects. Hidden objects are in no answer. Bad items as in set_transforms.")
+        .def(
+            "set_layers",
+            [](PyWorld& world, NodeHandle node, std::uint32_t layers) {
+                value_of(world.change([&](World& w) { return w.set_layers(node, layers); }));
+            },
+            py::arg("node"), py::arg("layers"),
+            "Sets a node's layers. Objects below it have only those of their layers that are also in these.")
         .def(
             "set_layers",
             [](PyWorld& world, const py::object& objects, std::uint32_t layers) {

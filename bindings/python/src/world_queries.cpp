@@ -221,6 +221,15 @@ void bind_world_queries(py::module_& module, py::class_<PyWorld>& type) {
             },
             py::arg("origin"), py::arg("direction"), py::arg("max_t") = kInfinity, py::arg("layers") = ~0u,
             "Returns each object's first ObjectHit, ordered along the ray.")
+        .def(
+            "raycast_any",
+            [](const PyWorld& world, const py::handle& origin, const py::handle& direction, double max_t,
+               std::uint32_t layers) {
+                const Ray ray = ray_of(origin, direction, max_t);
+                return world.ask([&](const World& w) { return w.raycast_any(ray, layers); });
+            },
+            py::arg("origin"), py::arg("direction"), py::arg("max_t") = kInfinity, py::arg("layers") = ~0u,
+            "Tells whether a ray hits anything; faster than raycast.")
         .def("cast", &cast, py::arg("shape"), py::arg("velocity"), py::arg("pose") = py::none(), py::kw_only(),
              py::arg("spin") = py::make_tuple(0.0, 0.0, 0.0), py::arg("duration") = 1.0,
              py::arg("ignore_initial_overlaps") = false, py::arg("layers") = ~0u,

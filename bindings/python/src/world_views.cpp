@@ -243,6 +243,29 @@ void bind_world_views(py::module_& module, py::class_<PyWorld>& type) {
     bind_one(module);
     bind_many(module);
     add_method(type, "view", &view_method, kViewText);
+    py::class_<OccluderRef>(module, "OccluderRef", "An object that hides others.")
+        .def_readonly("object", &OccluderRef::object)
+        .def_readonly("user", &OccluderRef::user)
+        .def_readonly("place", &OccluderRef::place, "which of its mesh's occluders")
+        .def("__repr__", [](const OccluderRef& r) {
+            return format("OccluderRef(user=%llu, place=%u)", static_cast<unsigned long long>(r.user), r.place);
+        });
+    type.def(
+        "hidden_by",
+        [](const PyWorld& world, const SeenByOne& seen, const std::optional<ObjectHandle>& object) {
+            Vector<OccluderRef> occluders;
+            value_of(world.ask([&](const World& w) {
+                return object ? w.hidden_by(*object, seen.found(), occluders)
+                              : w.drawn_occluders(seen.found(), occluders);
+            }));
+            py::list result;
+            for (const OccluderRef& one : occluders) result.append(one);
+            return result;
+        },
+        py::arg("seen"), py::arg("object") = py::none(),
+        "Returns the occluders that hide an object in a view with occlusion; without an object all that it drew. Call "
+        "it "
+        "before the next update.");
     type.def(
         "clusters_of",
         [](const PyWorld& world, MeshHandle mesh) {

@@ -18,6 +18,9 @@ def examples(cube):
     camera = crofton.Camera((0, 0, 5))
     clustered = crofton.ClusteredMesh(*cube)
     handle = world.add(box=box)
+    hiding = crofton.World()
+    hiding.add(mesh=hiding.add_mesh(mesh, occluders=True))
+    hiding.update()
     region = crofton.Region.prepare(crofton.boxes([[90, 0, 0]], 1))
     return [
         box, camera, camera.frustum, crofton.IntrinsicVolumes(1, 2, 3), crofton.Criterion(1), crofton.fit_exact(cube[0]),
@@ -26,7 +29,7 @@ def examples(cube):
         world.add_node(), world.add_mesh(mesh), region, crofton.World().attach(region, (0, 0, 0)), world.contacts[0].first, world.contacts[0], world,
         world.raycast((0, 0, 5), (0, 0, -1)), world.closest(10, sphere=((5, 0, 0), 1)),
         world.cast(crofton.Shape.sphere(1), (0, 0, -9), [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 5]]),
-        crofton.OcclusionOptions(), crofton.ViewMatrix(np.eye(4)), crofton.PictureView(), crofton.DrawLimits((0, 0, 0)),
+        hiding.hidden_by(hiding.view(camera, occlusion=True))[0], crofton.OcclusionOptions(), crofton.ViewMatrix(np.eye(4)), crofton.PictureView(), crofton.DrawLimits((0, 0, 0)),
         crofton.ViewRequest(camera, order="tree"), crofton.ShadowReceivers(world.view(camera)), world.view(camera), world.view([camera]), mesh, mesh.show(),
         mesh.raycast((0, 0, 5), (0, 0, -1)), mesh.distance(mesh), crofton.Shape.sphere(1), crofton.Shape.sphere(1).mass,
         crofton.Shape.sphere(1).cast((9, 0, 0), crofton.Shape.sphere(1), [[1, 0, 0, 5], [0, 1, 0, 0], [0, 0, 1, 0]]),

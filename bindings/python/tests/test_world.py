@@ -331,3 +331,115 @@ def test_a_projective_matrix_is_an_error(world):
     matrix[3, 0] = 1
     with pytest.raises(crofton.Error):
         world.add_node(transform=matrix)
+
+
+def cube_of(world, cube, size=1.0, **how):
+    return world.add_mesh(size * cube[0], cube[1], **how)
+
+
+DOWN = ((0.2, 0.1, 9), (0, 0, -1))
+
+
+def test_a_mesh_is_replaced_in_all_objects_that_have_it(world, cube):
+    mesh = cube_of(world, cube)
+    objects = [world.add(mesh=mesh, transform=at(x, 0, 0)) for x in (0, 10)]
+    world.update()
+    world.replace_mesh(mesh, 2 * cube[0], cube[1])
+    world.update()
+    assert [world.box_of(o).half_extents[0] for o in objects] == pytest.approx([2, 2], rel=1e-6)
+    cut = crofton.ClusteredMesh(*cube, max_triangles=1)
+    world.replace_mesh(mesh, *cube, clusters=True, precut=cut)
+    world.update()
+    assert len(world.clusters_of(mesh)) == len(cut) == 12
+    with pytest.raises(crofton.Error) as other:
+        world.replace_mesh(mesh, cube[0], cube[1][:6], clusters=True, precut=cut)
+    assert other.value.code == "invalid_argument"
+    with pytest.raises(crofton.Error, match="another World"):
+        crofton.World().replace_mesh(mesh, *cube)
+    with pytest.raises(TypeError):
+        world.replace_mesh(mesh, *cube, precut="cut")
+
+
+def test_an_object_takes_another_mesh(world, cube):
+    small, large = cube_of(world, cube), cube_of(world, cube, 2)
+    objects = [world.add(mesh=small, transform=at(x, 0, 0)) for x in (0, 10)]
+    world.set_mesh(objects, large)
+    world.update()
+    assert [world.box_of(o).half_extents[0] for o in objects] == pytest.approx([2, 2], rel=1e-6)
+    with pytest.raises(crofton.Error):
+        world.set_mesh(objects[0], crofton.MeshHandle(99, 1))
+
+
+def test_a_bound_becomes_another(world):
+    thing = world.add(box=crofton.Box((0, 0, 0), (1, 1, 1)))
+    for how, t in (({"sphere": ((0, 0, 0), 2)}, 7), ({"aligned": ((-1, -1, -1), (1, 1, 3))}, 6), ({"box": crofton.Box((0, 0, 4), (1, 1, 1))}, 4)):
+        world.set_bound(thing, **how)
+        world.update()
+        assert world.raycast((0, 0, 9), (0, 0, -1)).t == pytest.approx(t)
+    with pytest.raises(crofton.Error):
+        world.set_bound(thing)
+    with pytest.raises(TypeError):
+        world.set_bound(thing, box=crofton.Box((0, 0, 4), (1, 1, 1)), sphere=((0, 0, 0), 2))
+
+
+def test_user_numbers_and_collisions_change(world):
+    first, second = (world.add(box=crofton.Box((0, 0, 0), (1, 1, 1))) for _ in range(2))
+    world.set_user(first, 2**64 - 1)
+    world.update()
+    assert world.user_of(first) == 2**64 - 1 and len(world.contacts) == 1
+    world.set_collides_with([first, second], 0)
+    world.update()
+    assert [c.phase for c in world.contacts] == ["ended"]
+    with pytest.raises(TypeError):
+        world.set_user(first, -1)
+
+
+def test_nodes_move_below_others_and_have_layers(world, cube):
+    mesh = cube_of(world, cube)
+    left, right = (world.add_node(transform=at(x, 0, 0)) for x in (-10, 10))
+    thing = world.add(mesh=mesh, node=left)
+    world.update()
+    assert world.box_of(thing).center[0] == -10
+    world.set_parent(left, right)
+    world.update()
+    assert world.box_of(thing).center[0] == 0
+    with pytest.raises(crofton.Error):
+        world.set_parent(right, left)
+    with pytest.raises(TypeError):
+        world.set_parent(left, thing)
+    world.set_layers(right, 2)
+    world.update()
+    assert world.raycast(*DOWN, layers=1) is None and world.raycast(*DOWN, layers=2)
+    world.set_parent(left, None)
+    world.update()
+    assert world.box_of(thing).center[0] == -10
+
+
+def test_any_hit_of_a_ray(world, cube):
+    world.add(mesh=cube_of(world, cube), layers=2)
+    world.update()
+    assert world.raycast_any(*DOWN) is True and world.raycast_any(*DOWN, layers=1) is False
+    assert world.raycast_any(*DOWN, max_t=7.5) is False
+    with pytest.raises(crofton.Error):
+        world.raycast_any((0, 0, np.nan), (0, 0, -1))
+
+
+def test_who_hides_whom(world, cube):
+    wall = world.add_mesh(cube[0] * [4, 4, 0.1], cube[1], occluders=True)
+    hider = world.add(mesh=wall, transform=at(0, 0, -10), user=1, only_occludes=True)
+    hidden = world.add(mesh=cube_of(world, cube), transform=at(0, 0, -20), user=2)
+    beside = world.add(mesh=cube_of(world, cube), transform=at(-15, 0, -30), user=3)
+    world.update()
+    seen = world.view(crofton.Camera(), occlusion=True)
+    assert seen.users.tolist() == [3]
+    (by,) = world.hidden_by(seen, hidden)
+    assert (by.object, by.user, by.place) == (hider, 1, 0) and repr(by) == "OccluderRef(user=1, place=0)"
+    assert [o.user for o in world.hidden_by(seen)] == [1]
+    assert world.hidden_by(seen, beside) == []
+    with pytest.raises(crofton.Error):
+        crofton.World().hidden_by(seen, hidden)
+    world.set_occludes(hider, False)
+    world.update()
+    assert world.view(crofton.Camera(), occlusion=True).users.tolist() == [2, 3]
+    with pytest.raises(crofton.Error):
+        world.hidden_by(seen, hidden)  # changed since

@@ -5,7 +5,7 @@ use crate::jobs::with_jobs;
 use crate::shape::raw_mesh;
 use crate::views::raw_picture;
 use crate::{sys, ClusterBox, Clusters, Executor, PictureView, Result, VisibleCluster};
-use std::ptr;
+use std::{mem::size_of, ptr};
 
 /// A mesh cut into clusters. It never changes. [`MeshData::precut`](crate::MeshData) gives it to a World.
 #[derive(Debug)]
@@ -30,6 +30,20 @@ impl ClusteredMesh {
         let mesh = raw_mesh(positions, indices);
         check(unsafe { sys::crofton_clustered_mesh_create(&mesh, max_triangles, &mut raw) })?;
         Ok(ClusteredMesh { raw })
+    }
+    /// Makes an equal one of what [`to_bytes`](Self::to_bytes) returned, without cutting again.
+    pub fn from_bytes(bytes: &[u8]) -> Result<ClusteredMesh> {
+        let mut raw = ptr::null_mut();
+        check(unsafe { sys::crofton_clustered_mesh_deserialise(bytes.as_ptr(), bytes.len(), &mut raw) })?;
+        Ok(ClusteredMesh { raw })
+    }
+    /// Returns a copy, to store; for machines of the same byte order.
+    pub fn to_bytes(&self) -> Result<Vec<u8>> {
+        let mut count = 0;
+        check(unsafe { sys::crofton_clustered_mesh_serialise(self.raw, ptr::null_mut(), 0, &mut count) })?;
+        let mut bytes = vec![0; count];
+        check(unsafe { sys::crofton_clustered_mesh_serialise(self.raw, bytes.as_mut_ptr(), count, &mut count) })?;
+        Ok(bytes)
     }
     /// Returns the clusters.
     pub fn clusters(&self) -> Result<Clusters<'_>> {
@@ -57,6 +71,36 @@ pub struct DepthObject<'a> {
     pub one_sided: bool,
     /// False for alpha-tested and transparent objects: hides nothing.
     pub hides: bool,
+    /// By how much drawn vertices may be off, in units of the mesh, besides the rounding of `to_clip` times vertex.
+    pub position_error: f32,
+}
+
+impl<'a> DepthObject<'a> {
+    /// Returns an opaque object with two sides.
+    pub fn new(mesh: &'a ClusteredMesh, to_clip: [f32; 16]) -> Self {
+        DepthObject { mesh, to_clip, one_sided: false, hides: true, position_error: 0.0 }
+    }
+    fn raw(&self) -> sys::DepthObject {
+        sys::DepthObject {
+            mesh: self.mesh.raw,
+            to_clip: self.to_clip,
+            one_sided: self.one_sided as u32,
+            hides: self.hides as u32,
+            position_error: self.position_error,
+            ..unsafe { sys::crofton_default_depth_object() }
+        }
+    }
+}
+
+/// Where an object of a camera's picture lies in a light's shadow map.
+#[derive(Debug, Clone, Copy)]
+pub struct DepthReceiver<'a> {
+    /// That of the picture.
+    pub mesh: &'a ClusteredMesh,
+    /// Column-major; takes positions of the mesh to clip space of the map, as the shader does.
+    pub to_map: [f32; 16],
+    /// Anything within the mesh's bound may be seen, and not its triangles only.
+    pub solid: bool,
 }
 
 /// Finds the triangles of pictures; keeps its buffers from picture to picture.
@@ -85,20 +129,47 @@ impl DepthCuller {
     pub fn find_visible(
         &mut self, executor: Option<&dyn Executor>, objects: &[DepthObject], picture: &PictureView,
     ) -> Result<&[VisibleCluster]> {
-        let raw: Vec<sys::DepthObject> = objects
-            .iter()
-            .map(|object| sys::DepthObject {
-                mesh: object.mesh.raw,
-                to_clip: object.to_clip,
-                one_sided: object.one_sided as u32,
-                hides: object.hides as u32,
-                ..unsafe { sys::crofton_default_depth_object() }
-            })
-            .collect();
+        let raw: Vec<sys::DepthObject> = objects.iter().map(DepthObject::raw).collect();
         let (mut clusters, mut count, picture) = (ptr::null(), 0, raw_picture(picture));
         let (first, of, none) = (raw.as_ptr(), raw.len(), ptr::null_mut());
         check(with_jobs(executor, |jobs| unsafe {
             sys::crofton_depth_culler_find_visible(self.raw, first, of, &picture, jobs, &mut clusters, &mut count, none)
+        }))?;
+        Ok(unsafe { slice(clusters, count) })
+    }
+    /// Lists the triangles without which a shadow on what a camera sees would change. The casters' matrices take them
+    /// to the shadow map. `seen` has found the camera's picture; there is one receiver for each object of that.
+    /// `radius`: as in [`ShadowReceivers`](crate::ShadowReceivers).
+    pub fn find_casters(
+        &mut self, executor: Option<&dyn Executor>, casters: &[DepthObject], map: &PictureView, seen: &DepthCuller,
+        receivers: &[DepthReceiver], radius: f64,
+    ) -> Result<&[VisibleCluster]> {
+        let raw: Vec<sys::DepthObject> = casters.iter().map(DepthObject::raw).collect();
+        let objects: Vec<sys::DepthReceiver> = receivers
+            .iter()
+            .map(|r| sys::DepthReceiver { mesh: r.mesh.raw, to_map: r.to_map, solid: r.solid as u32 })
+            .collect();
+        let lookup = sys::DepthReceivers {
+            size: size_of::<sys::DepthReceivers>(),
+            seen: seen.raw,
+            objects: objects.as_ptr(),
+            object_count: objects.len(),
+            radius,
+        };
+        let (mut clusters, mut count, map) = (ptr::null(), 0, raw_picture(map));
+        let (first, of, none) = (raw.as_ptr(), raw.len(), ptr::null_mut());
+        check(with_jobs(executor, |jobs| unsafe {
+            sys::crofton_depth_culler_find_casters(
+                self.raw,
+                first,
+                of,
+                &map,
+                &lookup,
+                jobs,
+                &mut clusters,
+                &mut count,
+                none,
+            )
         }))?;
         Ok(unsafe { slice(clusters, count) })
     }

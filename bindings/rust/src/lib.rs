@@ -34,7 +34,7 @@ mod triangulate;
 mod views;
 mod world;
 
-pub use depth::{ClusteredMesh, DepthCuller, DepthObject};
+pub use depth::{ClusteredMesh, DepthCuller, DepthObject, DepthReceiver};
 pub use description::{Bound, Description, Indices, MeshData, Vertices};
 pub use error::{Error, Result, Status};
 pub use fit::{fit, fit_boxes, Criterion, Points, Quality};

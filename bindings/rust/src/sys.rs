@@ -445,6 +445,22 @@ pub struct DepthObject {
 }
 
 #[repr(C)]
+pub struct DepthReceiver {
+    pub mesh: *const ClusteredMesh,
+    pub to_map: [f32; 16],
+    pub solid: u32,
+}
+
+#[repr(C)]
+pub struct DepthReceivers {
+    pub size: usize,
+    pub seen: *const DepthCuller,
+    pub objects: *const DepthReceiver,
+    pub object_count: usize,
+    pub radius: f64,
+}
+
+#[repr(C)]
 pub struct DrawLimits {
     pub size: usize,
     pub eye: [f64; 3],
@@ -643,11 +659,22 @@ extern "C" {
     pub fn crofton_clustered_mesh_box(
         clustered: *const ClusteredMesh, cluster: usize, cluster_box: *mut crate::ClusterBox,
     ) -> Status;
+    pub fn crofton_clustered_mesh_serialise(
+        clustered: *const ClusteredMesh, bytes: *mut u8, capacity: usize, count: *mut usize,
+    ) -> Status;
+    pub fn crofton_clustered_mesh_deserialise(
+        bytes: *const u8, count: usize, clustered: *mut *mut ClusteredMesh,
+    ) -> Status;
     pub fn crofton_depth_culler_create(culler: *mut *mut DepthCuller) -> Status;
     pub fn crofton_depth_culler_destroy(culler: *mut DepthCuller) -> Status;
     pub fn crofton_depth_culler_find_visible(
         culler: *mut DepthCuller, objects: *const DepthObject, object_count: usize, picture: *const PictureView,
         jobs: *const Jobs, clusters: *mut *const crate::VisibleCluster, count: *mut usize, statistics: *mut c_void,
+    ) -> Status;
+    pub fn crofton_depth_culler_find_casters(
+        culler: *mut DepthCuller, objects: *const DepthObject, object_count: usize, map: *const PictureView,
+        receivers: *const DepthReceivers, jobs: *const Jobs, clusters: *mut *const crate::VisibleCluster,
+        count: *mut usize, statistics: *mut c_void,
     ) -> Status;
     pub fn crofton_depth_culler_nearness(culler: *const DepthCuller, x: u32, y: u32, nearness: *mut f32) -> Status;
 

@@ -314,7 +314,7 @@ fn a_culler_of_its_own_lists_the_same_triangles_and_takes_clusters_that_were_cut
     assert_eq!(mesh.box_of(1).unwrap_err().status, Status::OutOfRange);
     // Reversed depth to infinity: w = -z, near plane 1. Of three walls the second is hidden.
     let place = |x: f32, z: f32| [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0, x, 0.0, 1.0, -z];
-    let object = |x, z| DepthObject { mesh: &mesh, to_clip: place(x, z), one_sided: false, hides: true };
+    let object = |x, z| DepthObject::new(&mesh, place(x, z));
     let picture =
         PictureView { width: 160, height: 90, depth: DepthRange::ReversedZeroToOne, samples: 1, work_limit: 0 };
     let mut culler = DepthCuller::new().unwrap();
@@ -328,8 +328,34 @@ fn a_culler_of_its_own_lists_the_same_triangles_and_takes_clusters_that_were_cut
     assert_eq!(culler.nearness(0, 0).unwrap(), f32::NEG_INFINITY);
     let glass = DepthObject { hides: false, ..objects[0] };
     assert_eq!(culler.find_visible(None, &[glass, objects[1]], &picture).unwrap().len(), 2);
+    let unknown = DepthObject { position_error: -1.0, ..objects[1] }; // listed, and hides nothing
+    assert_eq!(culler.find_visible(None, &[objects[0], unknown], &picture).unwrap().len(), 2);
     let empty = PictureView { width: 0, ..picture };
     assert_eq!(culler.find_visible(None, &objects, &empty).unwrap_err().status, Status::OutOfRange);
+    // The camera sees one wall. The light is where the camera is: of two casters one is before that wall, one beside it.
+    let mut camera = DepthCuller::new().unwrap();
+    camera.find_visible(None, &[object(0.0, -20.0)], &picture).unwrap();
+    let (casters, map) =
+        ([object(0.0, -10.0), object(30.0, -35.0)], PictureView { width: 256, height: 256, ..picture });
+    let receiver = DepthReceiver { mesh: &mesh, to_map: place(0.0, -20.0), solid: false };
+    assert_eq!(culler.find_visible(None, &casters, &map).unwrap().len(), 2);
+    for executor in [None, Some(&Threads(2) as &dyn Executor)] {
+        let needed = culler.find_casters(executor, &casters, &map, &camera, &[receiver], 1.0).unwrap();
+        assert_eq!(needed.iter().map(|c| c.object).collect::<Vec<_>>(), [0]);
+    }
+    let refused = |receivers: &[_], radius| {
+        let mut light = DepthCuller::new().unwrap();
+        let error = light.find_casters(None, &casters, &map, &camera, receivers, radius).unwrap_err();
+        (error.status, error.item)
+    };
+    assert_eq!(refused(&[], 1.0).0, Status::InvalidArgument);
+    assert_eq!(refused(&[receiver], 0.0).0, Status::OutOfRange);
+    let stored = ClusteredMesh::from_bytes(&mesh.to_bytes().unwrap()).unwrap();
+    assert_eq!(refused(&[DepthReceiver { mesh: &stored, ..receiver }], 1.0), (Status::InvalidArgument, Some(0)));
+    assert_eq!(stored.to_bytes().unwrap(), mesh.to_bytes().unwrap());
+    assert_eq!(ClusteredMesh::from_bytes(&stored.to_bytes().unwrap()[1..]).unwrap_err().status, Status::Parse);
+    assert_eq!(ClusteredMesh::from_bytes(&[]).unwrap_err().status, Status::Parse);
+
     assert!(ClusteredMesh::new(&corners, &[0, 1, 7], 0).is_err());
     assert!(ClusteredMesh::new(&corners, &[0, 1, 2], 65).is_err());
 

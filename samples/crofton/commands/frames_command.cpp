@@ -506,12 +506,10 @@ void add_frames_command(CommandLine& line) {
     const Option occlude =
         command.flag("--occlude", options->occlude, "Also draw each frame without hidden objects, and compare both");
     command
-        .option(
-            "--occlusion", options->occlusion,
-            "depth: finds hidden triangles of this picture by the depth of those drawn before. occluders: finds "
-            "hidden instances by solid boxes found in the scene, for any picture. sets: leaves out what visible sets "
-            "of regions prove hidden ('crofton pvs' on the folder). Default: depth, or occluders if "
-            "one of the next three options is given")
+        .option("--occlusion", options->occlusion,
+                "depth | occluders | sets, what finds what is hidden: the depth of this picture's triangles drawn "
+                "before; solid boxes found in the scene, for any picture; visible sets of regions ('crofton pvs' on "
+                "the folder). Default: depth, or occluders if one of the next three options is given")
         .needs(occlude);
     command.option("--occluders", options->occluders, "Largest number of occluders to draw; 128 by default")
         .whole_between(0, 1000000)

@@ -50,6 +50,7 @@ expect 'collide convex cull lines occlude paper pvs' crofton verify ''
 expect 'partner:' crofton fit --criterion part
 expect 'delaunay' crofton triangulate --method de
 expect 'random' crofton frames --camera ra
+expect 'occluders' crofton frames --occlude --occlusion oc
 expect '' crofton nothing --tr
 # Each command of the help is offered, and each has options.
 for command in $(crofton --help | sed -n '/^Subcommands:/,$s/^  \([a-z]*\) .*/\1/p'); do
