@@ -222,6 +222,17 @@ bool check_ray(const Scene& scene, const Ray& ray, double size) {
     return true;
 }
 
+// Keeps the hit of triangle k, of `corners`, if it is nearer than `nearest`.
+void keep_nearest(const Ray& ray, const Triangle& corners, std::uint32_t k, Sides sides,
+                  std::optional<RayHit>& nearest) {
+    const glm::dvec3 n = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+    const auto t = mesh::raycast(ray, corners);
+    if (!t || (sides == Sides::front && glm::dot(n, ray.direction) >= 0.0)) return;
+    if (nearest && nearest->t <= *t) return;
+    nearest = RayHit{*t, ray.origin + *t * ray.direction, glm::normalize(n), false, {0, k}};
+    if (glm::dot(n, ray.direction) > 0.0) nearest->normal = -nearest->normal;
+}
+
 }  // namespace
 
 TEST_SUITE("convex/ray") {
@@ -379,12 +390,7 @@ TEST_SUITE("convex/ray") {
                     Triangle corners;
                     for (int v = 0; v < 3; ++v)
                         corners[std::size_t(v)] = pose.rotation * surface.triangle(k).vertex(v) + pose.translation;
-                    const glm::dvec3 n = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
-                    const auto t = mesh::raycast(ray, corners);
-                    if (!t || (sides == Sides::front && glm::dot(n, ray.direction) >= 0.0)) continue;
-                    if (expected && expected->t <= *t) continue;
-                    expected = RayHit{*t, ray.origin + *t * ray.direction, glm::normalize(n), false, {0, k}};
-                    if (glm::dot(n, ray.direction) > 0.0) expected->normal = -expected->normal;
+                    keep_nearest(ray, corners, k, sides, expected);
                 }
                 const auto hit = raycast({shape, pose}, ray);
                 REQUIRE(hit.has_value() == expected.has_value());
@@ -424,12 +430,7 @@ TEST_SUITE("convex/ray") {
                     if (field.material(k / 2) == kHole) continue;
                     Triangle corners = field.triangle(k);
                     for (glm::dvec3& p : corners) p = pose.rotation * p + pose.translation;
-                    const glm::dvec3 n = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
-                    const auto t = mesh::raycast(ray, corners);
-                    if (!t || (sides == Sides::front && glm::dot(n, ray.direction) >= 0.0)) continue;
-                    if (expected && expected->t <= *t) continue;
-                    expected = RayHit{*t, ray.origin + *t * ray.direction, glm::normalize(n), false, {0, k}};
-                    if (glm::dot(n, ray.direction) > 0.0) expected->normal = -expected->normal;
+                    keep_nearest(ray, corners, k, sides, expected);
                 }
                 const auto hit = raycast({shape, pose}, ray);
                 REQUIRE(hit.has_value() == expected.has_value());

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The container of a .crofton file: a header, a table of sections, and a checksum for each.
 #include <crofton/bake/container.hpp>
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Updates of a Broadphase in which few items change: finds the pairs around these.
 #include <hwy/cache_control.h>
 #include <algorithm>
 #include <crofton/geometry/finite.hpp>

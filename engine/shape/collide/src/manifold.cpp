@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Contacts of bounds with spheres. Contact points of shapes are in convex/src/manifold.cpp.
 #include <algorithm>
 #include <cmath>
 #include <crofton/collide/bound_contacts.hpp>

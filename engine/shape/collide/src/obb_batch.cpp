@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Overlap of many pairs of boxes, sixteen at a time.
 #include <hwy/cache_control.h>
 #include <algorithm>
 #include <bit>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Overlap of a box with a sphere or a capsule.
 #include <cmath>
 #include <crofton/collide/bound_contacts.hpp>
 #include <crofton/geometry/finite.hpp>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Queries of a BoxTree: the items that a ray hits, or that a shape overlaps.
 #include <algorithm>
 #include <array>
 #include <bit>

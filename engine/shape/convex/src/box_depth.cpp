@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Penetration depth of two boxes, and the points at that depth.
 #include <algorithm>
 #include <cmath>
 

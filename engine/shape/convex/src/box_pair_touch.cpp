@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// How two boxes touch: the face or the pair of edges that separates them best.
 #include <algorithm>
 #include <cmath>
 

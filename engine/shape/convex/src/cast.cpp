@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// cast: the first time at which two moving shapes touch. Checks the input and chooses between the ways to advance.
 #include <algorithm>
 #include <cmath>
 #include <crofton/convex/query.hpp>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Compounds: shapes made of placed children, with a tree over the children's boxes.
 #include <algorithm>
 #include <cmath>
 #include <crofton/convex/shape.hpp>

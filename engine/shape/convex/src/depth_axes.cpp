@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Penetration depth by all separating axes: faces of either shape and products of two edges. Used where the bounds of
+// EPA stay apart.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Height fields: building, and the search for cells near a box or along a ray, over levels of least and largest
+// heights.
 #include <algorithm>
 #include <cmath>
 #include <crofton/convex/shape.hpp>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Hull::build: the convex hull of points as a shape, with its planes, and checks of the input.
 #include <algorithm>
 #include <cmath>
 #include <crofton/convex/shape.hpp>

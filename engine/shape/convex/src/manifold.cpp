@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// contact_manifold: the contact points of two shapes, at most ManifoldOptions::max_points. Clips the touching faces
+// against each other.
 #include <algorithm>
 #include <cmath>
 #include <crofton/convex/query.hpp>

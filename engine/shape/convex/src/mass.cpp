@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// mass_properties: volume, centre of mass and inertia of a shape.
 #include <crofton/convex/shape.hpp>
 #include <glm/matrix.hpp>
 #include <numbers>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// How a sphere or a capsule touches a triangle, by the nearest points of a segment.
 #include <cmath>
 #include <limits>
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Tests whether a point, or another mesh, is inside a closed mesh, by counting the crossings of a ray.
 #include <algorithm>
 #include <cmath>
 #include <crofton/mesh/mesh_parts.hpp>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Builds a MeshTree: groups triangles into leaves, splits by surface area, and fits a box to each node.
 #include <algorithm>
 #include <cmath>
 #include <crofton/core/drop_spare.hpp>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Rays against one box, one triangle or a mesh: exact tests, and the public functions. ray_traversal.cpp walks the
+// tree.
 #include <algorithm>
 #include <cmath>
 #include <crofton/geometry/expansion.hpp>

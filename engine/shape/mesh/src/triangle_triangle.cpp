@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Overlap of two triangles, exactly.
 #include <algorithm>
 #include <cmath>
 #include <crofton/geometry/plane_filter.hpp>

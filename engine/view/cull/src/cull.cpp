@@ -9,6 +9,10 @@
 
 namespace crofton::cull {
 
+std::span<const Verdict> VisibleSet::verdicts() const {
+    return {verdicts_.data(), verdicts_.empty() ? 0 : size()};
+}
+
 void find_visible(const boxtree::BoxTree& tree, const View& view, VisibleSet& visible, const CullOptions& options,
                   Executor& executor) {
     Query(view, visible, options).run(tree, executor);

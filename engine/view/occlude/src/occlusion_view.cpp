@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// occlusion_view_of: the view of a camera or of a matrix.
 #include <algorithm>
 #include <cmath>
 #include <crofton/geometry/trigonometry.hpp>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// find_visible: shares the work among threads, runs the kernels, and decides what these leave open.
 #include "tree/query.hpp"
 
 #include <hwy/cache_control.h>

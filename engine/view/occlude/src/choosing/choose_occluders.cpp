@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// choose_occluders: the occluders that hide most in a view.
 #include <algorithm>
 #include <bit>
 #include <cmath>

@@ -23,13 +23,11 @@ class VisibleSet {
     // order depends only on tree and view: first the items that are inside, then the straddling ones, each part roughly
     // in the tree's order.
     [[nodiscard]] std::span<const boxtree::ItemId> ids() const { return {ids_.data(), size()}; }
-    [[nodiscard]] std::size_t size() const { return ids_.empty() ? 0 : size_; }  // empty: moved from
-    [[nodiscard]] std::size_t inside_count() const { return ids_.empty() ? 0 : inside_; }
+    [[nodiscard]] std::size_t size() const { return ids_.size() == 0 ? 0 : size_; }  // empty: moved from
+    [[nodiscard]] std::size_t inside_count() const { return ids_.size() == 0 ? 0 : inside_; }
     // Returns the verdicts of ids() in ResultOrder::ascending. In ResultOrder::tree it is empty: the first
     // inside_count() ids are inside, the others straddle.
-    [[nodiscard]] std::span<const Verdict> verdicts() const {
-        return {verdicts_.data(), verdicts_.empty() ? 0 : size()};
-    }
+    [[nodiscard]] std::span<const Verdict> verdicts() const;
     [[nodiscard]] const Statistics& statistics() const { return statistics_; }
 
   private:
@@ -129,7 +127,7 @@ class MaskedVisibleSet {
         std::memcpy(&mask, masks_.data() + i * mask_bytes_, mask_bytes_);
         return mask;
     }
-    [[nodiscard]] std::size_t size() const { return ids_.empty() ? 0 : size_; }  // empty: moved from
+    [[nodiscard]] std::size_t size() const { return ids_.size() == 0 ? 0 : size_; }  // empty: moved from
 
   private:
     friend class ManyViewsQuery;
