@@ -156,9 +156,10 @@ void walk_street(const std::string& name, std::uint32_t instances, const depth::
         const TriangleMesh& mesh = source.scene.mesh(m);
         mesh_bytes += bytes_of(mesh);
         if (source.scene.is_mesh_removed(m)) continue;
-        clusters.meshes[m].permute(mesh.indices, lent.emplace_back(mesh.indices.size()));
-        if (auto done = clusters.meshes[m].lend(mesh.positions, lent.back()); !done)
-            (void)expect(Result<int>(done.error()), "lend");
+        depth::ClusteredMesh cut = *clusters.meshes[m];
+        cut.permute(mesh.indices, lent.emplace_back(mesh.indices.size()));
+        if (auto done = cut.lend(mesh.positions, lent.back()); !done) (void)expect(Result<int>(done.error()), "lend");
+        clusters.meshes[m] = std::make_shared<const depth::ClusteredMesh>(std::move(cut));
     }
 
     const Aabb focus = pipeline::focus_of(source.scene);

@@ -42,8 +42,9 @@ std::uint64_t region_key(const assets::SceneSource& source, std::uint32_t column
                          const bake::BakeOptions& options, Executor& executor) {
     const scene::Scene& scene = source.scene;
     Sums sums(executor);
-    const std::uint32_t given[] = {
-        CROFTON_VERSION, bake::kVersion, columns, rows, static_cast<std::uint32_t>(options.tree), options.clusters};
+    const std::uint32_t given[] = {CROFTON_VERSION, bake::kVersion, bake::kClustersVersion,
+                                   columns,         rows,           static_cast<std::uint32_t>(options.tree),
+                                   options.clusters};
     sums.add(std::span<const std::uint32_t>(given));
     for (scene::MeshId m = 0; m < scene.mesh_count(); ++m) {
         const TriangleMesh& mesh = scene.mesh(m);

@@ -47,7 +47,7 @@ void DrawList::append(scene::MeshId mesh, bool flat) {
         render::append_mesh(drawables_->mesh(mesh), kPlainColor, vertices, indices);
     if (clusters_ && !indices.empty()) {
         const Vector<std::uint32_t> in_order = indices;
-        clusters_->meshes[mesh].permute(in_order, indices);
+        clusters_->meshes[mesh]->permute(in_order, indices);
     }
     Part part{static_cast<std::uint32_t>(vertices_.size()), static_cast<std::uint32_t>(vertices.size()),
               static_cast<std::uint32_t>(indices_.size()), static_cast<std::uint32_t>(indices.size()), Aabb{}};
@@ -82,8 +82,8 @@ void DrawList::select(std::span<const depth::VisibleCluster> visible, const Came
     for (std::size_t i = 0; i < selected_.size(); ++i) {
         const scene::MeshId mesh = drawables_->mesh_of(selected_[i].instance);
         for (std::size_t k = selected_[i].begin; k < selected_[i].end; ++k) {
-            const depth::Cluster& cluster = clusters_->meshes[mesh].clusters()[visible[k].cluster];
-            const Aabb bounds = bounds_of(clusters_->meshes[mesh].box_of(visible[k].cluster));
+            const depth::Cluster& cluster = clusters_->meshes[mesh]->clusters()[visible[k].cluster];
+            const Aabb bounds = bounds_of(clusters_->meshes[mesh]->box_of(visible[k].cluster));
             // Runs of triangles.
             std::uint64_t left = visible[k].triangles;
             for (std::uint32_t at = 0; left != 0;) {

@@ -58,7 +58,7 @@ std::uint64_t ObjectCounter::count(const Drawables& drawables, const Frustum& fr
         const scene::MeshId mesh_id = drawables.mesh_of(c.object);
         const TriangleMesh& mesh = drawables.mesh(mesh_id);
         const Transform world = drawables.world_of(c.object);
-        const depth::ClusteredMesh& cut = clusters.meshes[mesh_id];
+        const depth::ClusteredMesh& cut = *clusters.meshes[mesh_id];
         const std::uint32_t first = cut.clusters()[c.cluster].first_triangle;
         for (std::uint64_t left = c.triangles; left != 0; left &= left - 1) {
             const std::size_t t = cut.triangle_order()[first + static_cast<std::uint32_t>(std::countr_zero(left))];

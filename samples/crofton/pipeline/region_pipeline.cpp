@@ -139,7 +139,7 @@ struct RegionPipeline::State {
         auto cut = std::make_shared<SceneClusters>();
         all_cut = true;
         for (const auto& mesh : drawables->meshes()) {
-            all_cut = all_cut && (!mesh->clusters.clusters().empty() || mesh->mesh.indices.empty());
+            all_cut = all_cut && (!mesh->clusters->clusters().empty() || mesh->mesh.indices.empty());
             cut->meshes.push_back(mesh->clusters);
         }
         clusters = std::move(cut);

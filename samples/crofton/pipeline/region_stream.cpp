@@ -52,7 +52,8 @@ class MeshLibrary {
         made->mesh.indices.assign(view.indices.begin(), view.indices.end());
         made->mesh.colors.assign(view.colors.begin(), view.colors.end());
         made->look = view.look;
-        if (const depth::ClusteredMesh* const clusters = scene.clusters(mesh)) made->clusters = *clusters;
+        if (const depth::ClusteredMesh* const clusters = scene.clusters(mesh))
+            made->clusters = std::make_shared<const depth::ClusteredMesh>(*clusters);
         known.push_back(made);
         return made;
     }

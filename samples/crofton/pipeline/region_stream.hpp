@@ -21,7 +21,8 @@ namespace crofton::pipeline {
 struct RegionDrawMesh {
     TriangleMesh mesh;
     bake::MeshLook look;
-    depth::ClusteredMesh clusters;  // empty if it was baked without
+    std::shared_ptr<const depth::ClusteredMesh> clusters =
+        std::make_shared<const depth::ClusteredMesh>();  // empty if it was baked without
 };
 
 // A region, and what its objects draw: object i has the mesh meshes[mesh_of[i]], or none (kNoIndex).

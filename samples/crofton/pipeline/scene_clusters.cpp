@@ -10,13 +10,17 @@ namespace crofton::pipeline {
 
 std::size_t SceneClusters::memory() const {
     std::size_t sum = 0;
-    for (const depth::ClusteredMesh& mesh : meshes) sum += mesh.memory();
+    for (const auto& mesh : meshes) sum += mesh->memory();
     return sum;
 }
 
 std::shared_ptr<const SceneClusters> take_clusters(assets::SceneSource& source) {
     if (source.clusters.empty()) return nullptr;
-    return std::make_shared<const SceneClusters>(SceneClusters{std::exchange(source.clusters, {})});
+    SceneClusters result;
+    for (depth::ClusteredMesh& mesh : source.clusters)
+        result.meshes.push_back(std::make_shared<const depth::ClusteredMesh>(std::move(mesh)));
+    source.clusters = {};
+    return std::make_shared<const SceneClusters>(std::move(result));
 }
 
 Result<SceneClusters> cut_scene(const scene::Scene& scene, Executor& executor) {
@@ -32,7 +36,7 @@ Result<SceneClusters> cut_scene(const scene::Scene& scene, Executor& executor) {
     result.meshes.reserve(cut.size());
     for (std::size_t m = 0; m < cut.size(); ++m) {
         if (!cut[m]) return fail(cut[m].error().code, m, cut[m].error().message);
-        result.meshes.push_back(std::move(*cut[m]));
+        result.meshes.push_back(std::make_shared<const depth::ClusteredMesh>(std::move(*cut[m])));
     }
     return result;
 }
@@ -43,7 +47,7 @@ void append_depth_objects(const scene::Scene& scene, const SceneClusters& cluste
     const render::ModelToClip to_clip(camera);
     for (const scene::InstanceId instance : instances) {
         const Transform& place = scene.world(scene.node_of(instance));
-        objects.push_back({.mesh = &clusters.meshes[scene.mesh_of(instance)],
+        objects.push_back({.mesh = clusters.meshes[scene.mesh_of(instance)].get(),
                            .to_clip = to_clip(place.linear, place.translation),
                            .one_sided = is_one_sided(SceneDrawables(scene), one_sided, instance)});
     }

@@ -14,7 +14,7 @@
 namespace crofton::pipeline {
 
 struct SceneClusters {
-    std::vector<depth::ClusteredMesh> meshes;  // by mesh; empty where the mesh is removed
+    std::vector<std::shared_ptr<const depth::ClusteredMesh>> meshes;  // by mesh; empty where the mesh is removed
 
     // Bytes that the clusters hold.
     [[nodiscard]] std::size_t memory() const;

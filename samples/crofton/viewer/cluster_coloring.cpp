@@ -85,10 +85,10 @@ Result<void> ClusterColoring::classify(const assets::SceneSource& source, const 
         const scene::MeshId mesh = scene.mesh_of(i);
         while (next_in_view < in_view.size() && in_view[next_in_view] < i) ++next_in_view;
         if (next_in_view == in_view.size() || in_view[next_in_view] != i) {
-            add_outside(i, clusters.meshes[mesh]);
+            add_outside(i, *clusters.meshes[mesh]);
             continue;
         }
-        listed_.assign(clusters.meshes[mesh].clusters().size(), 0);
+        listed_.assign(clusters.meshes[mesh]->clusters().size(), 0);
         while (next_found < found->size() && (*found)[next_found].object < next_in_view) ++next_found;
         for (; next_found < found->size() && (*found)[next_found].object == next_in_view; ++next_found)
             listed_[(*found)[next_found].cluster] = (*found)[next_found].triangles;

@@ -75,7 +75,7 @@ TEST_SUITE("pipeline/region_pipeline") {
                     const scene::MeshId mesh = drawables->mesh_of(id);
                     REQUIRE(drawables->mesh(mesh).positions.size() == 8);
                     CHECK(std::abs(drawables->mesh(mesh).positions[0].x) == (is_common ? 0.25f : half_of(cell)));
-                    CHECK(flight.clusters()->meshes[mesh].largest().x == (is_common ? 0.25f : half_of(cell)));
+                    CHECK(flight.clusters()->meshes[mesh]->largest().x == (is_common ? 0.25f : half_of(cell)));
                 }
                 seen += frame.visible_ids.size();
                 most_slots = std::max(most_slots, drawables->mesh_count());

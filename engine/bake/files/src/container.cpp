@@ -59,7 +59,7 @@ Result<void> check_places(std::span<const std::byte> file, std::span<const Secti
         const std::size_t begin = aligned(end);
         if (section.offset != begin || begin > file.size() || section.size > file.size() - begin)
             return damaged({"section '", name_of(section), "' lies outside its place in the file"}, i);
-        if (section.element_size == 0 || section.size % section.element_size != 0 || section.reserved != 0)
+        if (section.element_size == 0 || section.size % section.element_size != 0)
             return damaged({"section '", name_of(section), "' does not hold whole elements"}, i);
         if (!all_zero(file.subspan(end, begin - end)))
             return damaged({"section '", name_of(section), "': padding before it"}, i);
@@ -71,13 +71,15 @@ Result<void> check_places(std::span<const std::byte> file, std::span<const Secti
 
 }  // namespace
 
-void Writer::add_bytes(std::string_view name, std::span<const std::byte> bytes, std::size_t element_size) {
+void Writer::add_bytes(std::string_view name, std::span<const std::byte> bytes, std::size_t element_size,
+                       std::uint32_t version) {
     Section section;
     CROFTON_ASSERT(name.size() <= sizeof section.name && sections_.size() < kMaxSections,
                    "a short name and few sections");
     std::memcpy(section.name, name.data(), std::min(name.size(), sizeof section.name));
     section.size = bytes.size();
     section.element_size = static_cast<std::uint32_t>(element_size);
+    section.version = version;
     section.checksum = checksum(bytes);
     sections_.push_back(section);
     contents_.emplace_back(bytes.begin(), bytes.end());
@@ -130,9 +132,14 @@ bool Reader::has(std::string_view name) const {
     return std::any_of(sections_.begin(), sections_.end(), [&](const Section& s) { return name_of(s) == name; });
 }
 
-Result<std::span<const std::byte>> Reader::find(std::string_view name, std::size_t element_size) const {
+Result<std::span<const std::byte>> Reader::find(std::string_view name, std::size_t element_size,
+                                                std::uint32_t version) const {
     for (const Section& section : sections_) {
         if (name_of(section) != name) continue;
+        if (section.version != version)
+            return fail(ErrorCode::unsupported, kNoItem,
+                        {"section '", name, "' is of version ", section.version, ", this library reads version ",
+                         version, ": bake it again"});
         if (section.element_size != element_size) return damaged({"section '", name, "' has elements of another size"});
         return file_.subspan(section.offset, section.size);
     }

@@ -61,7 +61,7 @@ void add_clusters(const scene::Scene& scene, const KnownClusters& known, Writer&
         all.insert(all.end(), part.begin(), part.end());
         ends.push_back(all.size() / 4);
     }
-    writer.add_bytes("clusters", all, 4);
+    writer.add_bytes("clusters", all, 4, kClustersVersion);
     writer.add("cluends", std::span<const std::uint64_t>(ends));
 }
 
@@ -69,7 +69,7 @@ Result<Vector<std::optional<depth::ClusteredMesh>>> read_clusters(const Reader& 
                                                                   std::span<const MeshRecord> meshes) {
     Vector<std::optional<depth::ClusteredMesh>> result;
     if (!reader.has("clusters")) return result;
-    const auto words = reader.section<std::uint32_t>("clusters");
+    const auto words = reader.section<std::uint32_t>("clusters", kClustersVersion);
     if (!words) return words.error();
     const auto ends = reader.section<std::uint64_t>("cluends");
     if (!ends) return ends.error();

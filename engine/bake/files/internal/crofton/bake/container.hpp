@@ -31,11 +31,12 @@ struct Section {
     std::uint64_t size = 0;  // bytes, a multiple of element_size
     std::uint64_t checksum = 0;
     std::uint32_t element_size = 1;
-    std::uint32_t reserved = 0;
+    std::uint32_t version = 0;  // of what is in it
 };
 static_assert(sizeof(Header) == 64 && sizeof(Section) == 40);
 
-inline constexpr std::uint32_t kVersion = 1;  // of the container and of what is in it
+inline constexpr std::uint32_t kVersion = 1;          // of the container
+inline constexpr std::uint32_t kClustersVersion = 1;  // of its section: changes with ClusteredMesh::serialise
 inline constexpr std::size_t kAlignment = 64;
 inline constexpr std::uint32_t kMaxSections = 64;
 
@@ -47,7 +48,8 @@ class Writer {
         add_bytes(name, std::as_bytes(elements), sizeof(T));
     }
     // The same for elements of a size that is known only now, as those of another file's section.
-    void add_bytes(std::string_view name, std::span<const std::byte> bytes, std::size_t element_size);
+    void add_bytes(std::string_view name, std::span<const std::byte> bytes, std::size_t element_size,
+                   std::uint32_t version = 0);
     // The whole file.
     [[nodiscard]] Vector<std::byte> finish();
 
@@ -62,10 +64,11 @@ class Reader {
     // Borrows the bytes, which start at a multiple of 64. Errors say what is wrong, and for sections which one.
     [[nodiscard]] static Result<Reader> open(std::span<const std::byte> file, Executor& executor = serial_executor());
 
-    // Errors: no such section (parse); elements of another size. T is plain data aligned to 64 bytes at most.
+    // Errors: no such section, elements of another size (parse); another version (unsupported). T is plain data aligned
+    // to 64 bytes at most.
     template <class T>
-    [[nodiscard]] Result<std::span<const T>> section(std::string_view name) const {
-        const auto bytes = find(name, sizeof(T));
+    [[nodiscard]] Result<std::span<const T>> section(std::string_view name, std::uint32_t version = 0) const {
+        const auto bytes = find(name, sizeof(T), version);
         if (!bytes) return bytes.error();
         return std::span(reinterpret_cast<const T*>(bytes->data()), bytes->size() / sizeof(T));
     }
@@ -73,7 +76,8 @@ class Reader {
     [[nodiscard]] bool has(std::string_view name) const;
 
   private:
-    [[nodiscard]] Result<std::span<const std::byte>> find(std::string_view name, std::size_t element_size) const;
+    [[nodiscard]] Result<std::span<const std::byte>> find(std::string_view name, std::size_t element_size,
+                                                          std::uint32_t version) const;
     std::span<const std::byte> file_;
     std::span<const Section> sections_;
 };
