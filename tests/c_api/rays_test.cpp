@@ -107,6 +107,36 @@ TEST_SUITE("capi/rays") {
             }
     }
 
+    TEST_CASE("whether a ray hits a mesh is the same by both calls, however long its direction and far its origin") {
+        const ShapeHandle mesh = make_mesh_shape();
+        const crofton_transform here = translation(0, 0, 0);
+        const crofton_placed placed{mesh.get(), &here};
+        const auto check = [&](const crofton_ray& r, bool expected) {
+            auto hit = sized<crofton_shape_ray_hit>();
+            REQUIRE(crofton_shape_raycast(&placed, &r, &hit) == CROFTON_OK);
+            CHECK(std::isfinite(hit.t) == expected);
+            int any = -1;
+            REQUIRE(crofton_shape_raycast_any(&placed, &r, &any) == CROFTON_OK);
+            CHECK((any == 1) == expected);
+        };
+        for (int exponent = -530; exponent <= 1020; exponent += 10) {
+            CAPTURE(exponent);
+            const double length = std::scalbn(1.0, exponent);
+            for (const double max_t : {kInfinity, 8.0 / length, 3.0 / length}) {
+                check(ray(0.25, 0.2, 5, 0.01 * length, 0.02 * length, -length, max_t), max_t * length > 4.0);
+                check(ray(0.25, 0.2, 5, 0.5 * length, 0, -length, max_t), false);
+            }
+        }
+        for (int exponent = 10; exponent <= 1020; exponent += 10) {
+            CAPTURE(exponent);
+            const double far = std::scalbn(1.0, exponent);
+            check(ray(0.25, 0.2, far, 0, 0, -1), true);
+            check(ray(0.25, 0.2, far, 0, 0, 1), false);
+            check(ray(0.25, -far, 0.1, 1, 0.01, 0.003, 100), false);
+            check(ray(-far, 0.1, 0.1, 1, 0.01, 0.003, 100), false);
+        }
+    }
+
     TEST_CASE("trees refuse what is no ray and no shape, and answer for the others") {
         const std::vector<crofton_box> boxes{box_at(0, 0, 0), box_at(3, 0, 0), box_at(6, 0, 0), box_at(6, 5, 0)};
         const std::vector<std::uint32_t> layers{1, 2, 1, 1};

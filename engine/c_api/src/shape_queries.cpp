@@ -56,6 +56,13 @@ bool is_identity(const RigidTransform& pose) {
     return pose.rotation == glm::dmat3(1.0) && pose.translation == glm::dvec3(0.0);
 }
 
+// Whether mesh::hits_any answers as exactly as for other rays.
+bool is_in_range(const Ray& ray) {
+    const glm::dvec3 from = glm::abs(ray.origin), along = glm::abs(ray.direction);
+    const double largest = std::max({along.x, along.y, along.z});
+    return std::max({from.x, from.y, from.z}) <= 1e36 && largest >= 1e-149 && largest <= 1e149;
+}
+
 // Lines for the caller's function.
 auto line_teller(crofton_line_visitor visit, void* user) {
     return [=](const glm::dvec3& from, const glm::dvec3& to) { visit(user, &from.x, &to.x); };
@@ -187,7 +194,8 @@ crofton_status crofton_shape_raycast_any(const crofton_placed* shape, const crof
     const PlacedShape placed(shape, __func__);
     CROFTON_CHECK(placed.status());
     const auto& mesh = shape->shape->data->mesh;
-    const bool is_quick = mesh && placed.shape().sides() == convex::Sides::both && is_identity(placed.pose());
+    const bool is_quick =
+        mesh && placed.shape().sides() == convex::Sides::both && is_identity(placed.pose()) && is_in_range(checked);
     const bool is_hit =
         is_quick ? mesh::hits_any(checked, *mesh) : convex::raycast(placed.placed(), checked).has_value();
     *hit = is_hit ? 1 : 0;

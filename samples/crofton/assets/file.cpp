@@ -62,7 +62,10 @@ Result<std::string> path_below(const std::string& folder, const std::string& nam
     const auto refused = [&](const char* why) {
         return fail(ErrorCode::io, kNoItem, "'" + name.substr(0, 200) + "' " + why);
     };
-    if (name.empty() || name.find('\0') != name.npos) return refused("is no file's name");
+    if (name.empty()) return refused("is no file's name");
+    if (const std::size_t zero = name.find('\0'); zero != name.npos)
+        return fail(ErrorCode::io, kNoItem,
+                    "'" + name.substr(0, std::min<std::size_t>(zero, 200)) + "' goes on after a byte 0");
     if (name[0] == '/' || name[0] == '\\' || (name.size() > 1 && name[1] == ':'))
         return refused("is an absolute path; only files below the folder of the file that names it are read");
     for (std::size_t begin = 0; begin <= name.size();) {

@@ -240,7 +240,8 @@ void add_triangulate_command(CommandLine& line) {
                             .not_negative();
     command
         .option("--time-limit,--seconds", options->seconds,
-                "Seconds per polygon; the result then depends on the machine")
+                "Seconds of search per polygon; the result then depends on the machine. Before and after, up to 60 "
+                "microseconds per point are taken to find and improve a triangulation")
         .show_default();
     command
         .option("--memory-limit", options->memory,

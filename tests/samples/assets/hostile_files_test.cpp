@@ -88,6 +88,7 @@ TEST_SUITE("assets/hostile_files") {
             const std::string said = place.triangle(uri);
             CHECK(says(said, "a.gltf"));
             CHECK(says(said, "buffer 0"));
+            CHECK(said.find('\0') == said.npos);  // it would end the message
         }
         CHECK(says(place.triangle("../secret.bin"), "leads out of its folder"));
         CHECK(says(place.triangle(absolute), "absolute path"));

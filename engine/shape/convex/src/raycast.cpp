@@ -85,8 +85,8 @@ Approach approach(const ShapeAtPose& placed, const Ray& ray) {
     WideVector origin;
     origin.high = ray.origin;
     origin.add(-placed.pose.translation);
-    // Three steps end near the shape from wherever doubles reach: each leaves a rounding of the way before it.
-    for (int step = 0; step < 3; ++step) {
+    // Each step leaves at most 2^-46 of the way before it, so 24 end near the shape from wherever doubles reach.
+    for (int step = 0; step < 24; ++step) {
         const glm::dvec3 to_center = (center - origin.high) - origin.low;
         const double way = glm::dot(to_center, ray.direction) / squared * (1.0 - 0x1p-48);
         if (!(way * length > 4.0 * radius) || !(way < HUGE_VAL)) break;

@@ -109,9 +109,10 @@ struct RayHit {
 // The point is the ray's first point in a shape that is larger or smaller by at most 1e-13 of its size. The size is
 // core_radius() plus radius(); for half-spaces it is the distances from the frame's origin to the ray's, and from there
 // to the point. So a ray that passes closer to the surface than that may hit or miss. t · |direction| is off by at most
-// that divided by the cosine between the ray and the normal, and by 2^-51 of itself. This holds for any distance of the
-// ray's origin, and for directions of any length. Rays hit the triangles of a surface exactly, so that nothing slips
-// through between two that share an edge. No allocation.
+// that divided by the cosine between the ray and the normal, and by 2^-51 of itself. This holds for origins within 1e18
+// sizes of the shape, and for directions of any length; a ray from farther away is shifted by up to 2^-102 of that
+// distance. Rays hit the triangles of a surface exactly, so that nothing slips through between two that share an edge.
+// No allocation.
 //
 // Hits nothing if the ray's origin or direction is NaN or infinite, the direction is 0, max_t is NaN or negative, or
 // the pose is not valid: validate(Ray) and validate_pose say why.
