@@ -37,8 +37,8 @@ struct KnownClusters {
 // Section `clusters`: ClusteredMesh::serialise of one mesh after another, in words of 4 bytes; `cluends`: where each
 // ends. Nothing for a mesh that cannot be cut.
 void add_clusters(const scene::Scene& scene, const KnownClusters& known, Writer& writer, Executor& executor);
-// Empty where the file has none. Errors: clusters of another version (unsupported); as ClusteredMesh::deserialise; ends that do not ascend to the section's; other
-// triangle counts than the meshes' (item = mesh).
+// Empty where the file has none. Errors: clusters of another version (unsupported); as ClusteredMesh::deserialise; ends
+// that do not ascend to the section's; other triangle counts than the meshes' (item = mesh).
 [[nodiscard]] Result<Vector<std::optional<depth::ClusteredMesh>>> read_clusters(const Reader& reader,
                                                                                 std::span<const MeshRecord> meshes);
 

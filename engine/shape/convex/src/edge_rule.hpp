@@ -25,8 +25,8 @@ struct NearTriangle {
 // within what was searched, the surface is asked for all of them.
 class EdgeRule {
   public:
-    // For these triangles, all that touch the box around the shape's core, grown by its radius. Both stay unchanged until
-    // the next call.
+    // For these triangles, all that touch the box around the shape's core, grown by its radius. Both stay unchanged
+    // until the next call.
     void start(std::span<const NearTriangle> triangles, const ShapeAtPose& shape);
     // Whether a triangle that shares the vertices of `index` that are farthest along the normal rises above them. The
     // point of touch lies on the triangle, around the surface's origin.
