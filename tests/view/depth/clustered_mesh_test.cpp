@@ -231,5 +231,76 @@ TEST_CASE("bytes of clusters that are cut off or changed are refused or harmless
     CHECK(refused > 3 * (16 + 8 * cut.clusters().size() + 4 * cut.triangle_order().size()));
 }
 
+// Bytes of a mesh whose clusters have one triangle each, and where their lists begin.
+struct StoredBytes {
+    static constexpr std::size_t kHeader = 76, kCorners = 8, kVertices = 12, kLargest = 16;  // counts are words
+
+    Vector<std::byte> bytes;
+    std::size_t boxes, order, corners;
+
+    explicit StoredBytes(const ClusteredMesh& mesh) : bytes(mesh.serialise()) {
+        const std::size_t clusters = mesh.clusters().size();
+        boxes = kHeader + (clusters + 3) / 4 * 4;
+        order = boxes + 32 * clusters;
+        corners = order + 4 * mesh.triangle_count();
+    }
+    template <class T>
+    void set(std::size_t at, T value) {
+        std::memcpy(&bytes[at], &value, sizeof value);
+    }
+    [[nodiscard]] std::uint32_t word(std::size_t at) const {
+        std::uint32_t value;
+        std::memcpy(&value, &bytes[at], sizeof value);
+        return value;
+    }
+    void insert(std::size_t at, std::size_t count) {
+        bytes.insert(bytes.begin() + static_cast<std::ptrdiff_t>(at), count, std::byte(0));
+    }
+    [[nodiscard]] bool is_refused() const {
+        const auto read = ClusteredMesh::deserialise(bytes);
+        return !read && read.error().code == ErrorCode::parse;
+    }
+};
+
+TEST_CASE("bytes that are one off in a count, an index or a sign are refused, though all lists have that length") {
+    oracle::NearMisses random(13);
+    const TriangleMesh mesh = hills(4, 50.0f, 5.0f, random);
+    const ClusteredMesh cut = ClusteredMesh::cut(mesh.positions, mesh.indices, {.max_triangles = 1}).value();
+    const StoredBytes whole(cut);
+    CHECK_FALSE(whole.is_refused());
+    SUBCASE("no cluster, but the word that follows the last one's corners") {
+        StoredBytes none = whole;
+        none.bytes.assign(StoredBytes::kHeader + 4, std::byte(0));
+        none.set(StoredBytes::kCorners, 1u);
+        CHECK(none.is_refused());
+    }
+    SUBCASE("a word more of corners than clusters have") {
+        StoredBytes more = whole;
+        more.set(StoredBytes::kCorners, whole.word(StoredBytes::kCorners) + 1);
+        more.insert(whole.corners, 4);
+        CHECK(more.is_refused());
+    }
+    SUBCASE("a cluster with four vertices and one triangle") {
+        StoredBytes more = whole;
+        const std::size_t last_box = whole.order - 4;  // its last word: vertices in the high byte
+        more.set(last_box, whole.word(last_box) + (1u << 24));
+        more.set(StoredBytes::kVertices, whole.word(StoredBytes::kVertices) + 1);
+        more.insert(whole.bytes.size(), 12);
+        CHECK(more.is_refused());
+    }
+    SUBCASE("an order that names the triangle after the last") {
+        StoredBytes other = whole;
+        other.set(whole.order, static_cast<std::uint32_t>(cut.triangle_count()));
+        CHECK(other.is_refused());
+    }
+    SUBCASE("a negative largest coordinate") {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            StoredBytes other = whole;
+            other.set(StoredBytes::kLargest + 4 * axis, -1.0f);
+            CHECK(other.is_refused());
+        }
+    }
+}
+
 }  // namespace
 }  // namespace crofton::testing
