@@ -226,7 +226,7 @@ TEST_SUITE("mesh/mesh_tree") {
     }
 
     TEST_CASE("the same mesh gives the same tree, with any executor") {
-        for (const std::size_t count : {1, 9, 130, 1000, 40000})
+        for (const std::size_t count : {1u, 9u, 130u, 1000u, 40000u})
             for (const bool refittable : {false, true}) {
                 CAPTURE(count);
                 CAPTURE(refittable);
