@@ -2,6 +2,7 @@
 // Rays at meshes beside Embree: kinds of rays, few that stay in the cache and many that do not.
 #include <benchmark/benchmark.h>
 
+#include <crofton/core/executor.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
 
@@ -194,10 +195,11 @@ void many_rays(benchmark::State& state, const char* name, RayMaker make, std::si
 }
 
 // The tree and its hierarchy for rays.
-void ray_build(benchmark::State& state, const char* name) {
+void ray_build(benchmark::State& state, const char* name, unsigned threads) {
+    ThreadPool pool(threads);
     const TriangleMesh& mesh = mesh_of(name);
     if (mesh.indices.empty()) return state.SkipWithError("shared data is absent");
-    for (auto _ : state) benchmark::DoNotOptimize(mesh::MeshTree::build(mesh, {.rays = true}).value());
+    for (auto _ : state) benchmark::DoNotOptimize(mesh::MeshTree::build(mesh, {.rays = true}, pool).value());
 }
 
 #if defined(CROFTON_HAVE_EMBREE)
@@ -330,7 +332,10 @@ void embree_packets(benchmark::State& state, const char* name, RayMaker make, st
 void ray_benchmarks() {
     for (const char* mesh : {"bunny", "armadillo", "armadillo in four", "bunny in sixteen", "town"}) {
         const std::string build = std::string("ray build/") + mesh + "/";
-        benchmark::RegisterBenchmark((build + "crofton").c_str(), ray_build, mesh)->Unit(benchmark::kMillisecond);
+        benchmark::RegisterBenchmark((build + "crofton").c_str(), ray_build, mesh, 1u)->Unit(benchmark::kMillisecond);
+        benchmark::RegisterBenchmark((build + "two threads").c_str(), ray_build, mesh, 2u)
+            ->Unit(benchmark::kMillisecond)
+            ->UseRealTime();
 #if defined(CROFTON_HAVE_EMBREE)
         benchmark::RegisterBenchmark((build + "embree").c_str(), embree_build, mesh)->Unit(benchmark::kMillisecond);
 #endif

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "../../backwards.hpp"
 #include "../../ranges.hpp"
 #include "shape/mesh/meshes.hpp"
 
@@ -51,6 +52,11 @@ TriangleMesh torus(std::uint32_t around, std::uint32_t across) {
                 mesh.indices.push_back(v);
         }
     return mesh;
+}
+
+template <class T>
+bool same_bytes(const Vector<T>& a, const Vector<T>& b) {
+    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
 }
 
 double edge_sum(const MeshTree& tree) {
@@ -219,15 +225,32 @@ TEST_SUITE("mesh/mesh_tree") {
         CHECK(MeshTree::build(mesh)->pieces().size() == expected);
     }
 
-    TEST_CASE("the same mesh gives the same tree") {
-        const TriangleMesh mesh = random_triangles(1000, 5.0f);
-        const auto one = MeshTree::build(mesh), two = MeshTree::build(mesh);
-        REQUIRE(one->parts().nodes.size() == two->parts().nodes.size());
-        for (std::size_t n = 0; n < one->parts().nodes.size(); ++n)
-            for (std::uint32_t lane = 0; lane < one->parts().nodes[n].count; ++lane) {
-                CHECK(one->parts().nodes[n].child[lane] == two->parts().nodes[n].child[lane]);
-                for (int k = 0; k < 3; ++k)
-                    CHECK(one->parts().nodes[n].half[k][lane] == two->parts().nodes[n].half[k][lane]);
+    TEST_CASE("the same mesh gives the same tree, with any executor") {
+        for (const std::size_t count : {1u, 9u, 130u, 1000u, 40000u})
+            for (const bool refittable : {false, true}) {
+                CAPTURE(count);
+                CAPTURE(refittable);
+                const TriangleMesh mesh = random_triangles(count, 5.0f);
+                const MeshTreeOptions options{.refittable = refittable, .rays = true};
+                const MeshTree expected = MeshTree::build(mesh, options).value();
+                const auto check = [&](Executor& executor) {
+                    const MeshTree tree = MeshTree::build(mesh, options, executor).value();
+                    const MeshParts &one = expected.parts(), &two = tree.parts();
+                    CHECK(same_bytes(one.nodes, two.nodes));
+                    CHECK(same_bytes(one.leaves, two.leaves));
+                    CHECK(same_bytes(one.ray_nodes, two.ray_nodes));
+                    CHECK(same_bytes(one.refit.nodes, two.refit.nodes));
+                    CHECK(same_bytes(one.refit.leaves, two.refit.leaves));
+                    CHECK(std::memcmp(&one.root_box, &two.root_box, sizeof one.root_box) == 0);
+                    CHECK(std::memcmp(&one.refit.root, &two.refit.root, sizeof one.refit.root) == 0);
+                };
+                check(serial_executor());
+                for (const unsigned threads : {1u, 3u, 16u}) {
+                    Backwards backwards(threads);
+                    check(backwards);
+                    ThreadPool pool(threads);
+                    check(pool);
+                }
             }
     }
 

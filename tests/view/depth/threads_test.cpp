@@ -6,6 +6,7 @@
 #include <crofton/core/executor.hpp>
 #include <vector>
 
+#include "../../backwards.hpp"
 #include "depth_scenes.hpp"
 
 namespace crofton::testing {
@@ -16,20 +17,6 @@ using depth::DepthObject;
 using depth::DepthStatistics;
 using depth::PictureView;
 using depth::VisibleCluster;
-
-// Says that it has `threads`, and calls in the order that is hardest: the last range first.
-class Backwards final : public Executor {
-  public:
-    explicit Backwards(unsigned threads) : threads_(threads) {}
-    [[nodiscard]] unsigned concurrency() const override { return threads_; }
-    void parallel_for(std::size_t count, std::size_t grain, RangeTask body) override {
-        for (std::size_t i = (count + grain - 1) / grain; i-- > 0;)
-            body(i * grain, std::min(count, (i + 1) * grain), static_cast<unsigned>(i % threads_));
-    }
-
-  private:
-    unsigned threads_;
-};
 
 struct PictureAnswer {
     std::vector<VisibleCluster> clusters;

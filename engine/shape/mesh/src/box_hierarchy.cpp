@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <crofton/core/recovery.hpp>
 #include <crofton/geometry/float_lanes.hpp>
 #include <limits>
 #include <span>
@@ -90,26 +91,26 @@ FloatBox narrow(const WideBox& box) {
     return {{box.low[0], box.low[1], box.low[2]}, {box.high[0], box.high[1], box.high[2]}};
 }
 
+// Items that are split: a range is in one of the arrays, and its halves in the other.
+struct SplitItems {
+    Vector<WideBox> boxes[2];
+    Vector<std::uint32_t> order;
+};
+
+// Splits ranges of items. Ranges without common items may be split at once, by a Splitter each.
 class Splitter {
   public:
-    Splitter(std::size_t count, BoxOfItem box_of, std::uint32_t leaf_size, std::uint32_t granule)
-        : leaf_size_(leaf_size), granule_(granule), order_(count) {
-        for (Vector<WideBox>& items : items_) items.resize(count);
-        for (std::size_t i = 0; i < count; ++i) {
-            const FloatBox box = box_of(i);
-            WideBox& item = items_[0][i];
-            for (int k = 0; k < 3; ++k) item.low[k] = box.low[k], item.high[k] = box.high[k];
-            item.low[3] = std::bit_cast<float>(static_cast<std::uint32_t>(i) | kItemBit);
-        }
-    }
+    Splitter(SplitItems& items, std::uint32_t leaf_size, std::uint32_t granule)
+        : leaf_size_(leaf_size), granule_(granule), items_(items) {}
 
-    Vector<BinaryNode> split() {
+    // Splits down to leaves. The range itself is the first of the nodes.
+    Vector<BinaryNode> split_all(const BoxRange& all) {
         struct Todo {
             BoxRange range;
             std::uint32_t node;
         };
         Vector<BinaryNode> nodes;
-        nodes.reserve(2 * (order_.size() / std::max(granule_, (leaf_size_ + 1) / 2)) + 1);
+        nodes.reserve(2 * (all.size() / std::max(granule_, (leaf_size_ + 1) / 2)) + 1);
         Vector<Todo> stack;
         const auto add = [&](const BoxRange& range) {
             const auto node = static_cast<std::uint32_t>(nodes.size());
@@ -117,9 +118,9 @@ class Splitter {
             if (range.size() > leaf_size_)
                 stack.push_back({range, node});
             else
-                for (std::uint32_t i = range.begin; i < range.end; ++i) order_[i] = number_of(items_of(range)[i]);
+                for (std::uint32_t i = range.begin; i < range.end; ++i) items_.order[i] = number_of(items_of(range)[i]);
         };
-        add(whole());
+        add(all);
         while (!stack.empty()) {
             const Todo todo = stack.back();
             stack.pop_back();
@@ -130,18 +131,6 @@ class Splitter {
             add(right);
         }
         return nodes;
-    }
-
-    Vector<std::uint32_t> take_order() { return std::move(order_); }
-
-  private:
-    [[nodiscard]] const WideBox* items_of(const BoxRange& range) const { return items_[range.second ? 1 : 0].data(); }
-
-    BoxRange whole() const {
-        BoxRange range;
-        range.end = static_cast<std::uint32_t>(order_.size());
-        for (const WideBox& item : items_[0]) range.include(item);
-        return range;
     }
 
     // Within a range items ascend, before and after: so the tree does not depend on how a library sorts.
@@ -165,6 +154,11 @@ class Splitter {
         } else {
             part_by_number(range, left, right);
         }
+    }
+
+  private:
+    [[nodiscard]] const WideBox* items_of(const BoxRange& range) const {
+        return items_.boxes[range.second ? 1 : 0].data();
     }
 
     // The multiple of the granule that is nearest to `below`, with something on either side of it.
@@ -226,7 +220,7 @@ class Splitter {
     template <class IsLeft>
     void part(const BoxRange& range, std::uint32_t cut, BoxRange& left, BoxRange& right, const IsLeft& is_left) {
         const WideBox* const from = items_of(range);
-        WideBox* const to = items_[range.second ? 0 : 1].data();
+        WideBox* const to = items_.boxes[range.second ? 0 : 1].data();
         left.second = right.second = !range.second;
         left.end = right.begin = range.begin + cut;
         std::uint32_t next_left = range.begin, next_right = right.begin;
@@ -427,14 +421,87 @@ class Splitter {
     static constexpr std::uint32_t kMostAligned = 1024;  // a leaf that is not full is one of many above that
     static constexpr double kDearer = 1.25;              // so much may whole granules cost
     std::uint32_t leaf_size_, granule_;
-    Vector<WideBox> items_[2];  // a range is in one of them, and its halves in the other
-    Vector<std::uint32_t> order_;
+    SplitItems& items_;
     Vector<PlacedMiddle> near_;
     // By axis, twice: of many items the odd ones go to the second three. An item waits for the one before it in its
     // bin.
     static constexpr std::uint32_t kManyItems = 128;
     std::array<Bins, 6> bins_;
 };
+
+// The items' boxes, in the order of their numbers.
+BoxRange fill(SplitItems& items, std::size_t count, BoxOfItem box_of, Executor& executor) {
+    constexpr std::size_t kAtOnce = 16384;
+    for (Vector<WideBox>& boxes : items.boxes) boxes.resize(count);
+    items.order.resize(count);
+    Vector<BoxRange> parts((count + kAtOnce - 1) / kAtOnce);
+    crofton::detail::recoverable_for(executor, count, kAtOnce, [&](std::size_t begin, std::size_t end, unsigned) {
+        BoxRange part;
+        for (std::size_t i = begin; i < end; ++i) {
+            const FloatBox box = box_of(i);
+            WideBox& item = items.boxes[0][i];
+            for (int k = 0; k < 3; ++k) item.low[k] = box.low[k], item.high[k] = box.high[k];
+            item.low[3] = std::bit_cast<float>(static_cast<std::uint32_t>(i) | kItemBit);
+            part.include(item);
+        }
+        parts[begin / kAtOnce] = part;
+    });
+    BoxRange all;
+    all.end = static_cast<std::uint32_t>(count);
+    for (const BoxRange& part : parts) {
+        all.box.include(part.box);
+        all.middles.include(part.middles);
+    }
+    return all;
+}
+
+// Splits all items down to leaves. Ranges are split side by side: large ones in rounds, small ones to their leaves.
+// Children stand behind their parents.
+Vector<BinaryNode> split_items(SplitItems& items, const BoxRange& all, std::uint32_t leaf_size, std::uint32_t granule,
+                               Executor& executor) {
+    constexpr std::uint32_t kMostAtOnce = 4096;
+    struct Todo {
+        BoxRange range;
+        std::uint32_t node;
+        BoxRange left, right;      // of a large one
+        Vector<BinaryNode> below;  // of a small one
+    };
+    Vector<BinaryNode> nodes;
+    Vector<Todo> round, next;
+    const auto add = [&](const BoxRange& range) {
+        next.push_back({range, static_cast<std::uint32_t>(nodes.size()), {}, {}, {}});
+        nodes.push_back({range.box, range.begin, range.end});
+    };
+    add(all);
+    while (!next.empty()) {
+        round = std::exchange(next, {});
+        crofton::detail::recoverable_for(executor, round.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
+            Splitter splitter(items, leaf_size, granule);
+            for (std::size_t i = begin; i < end; ++i) {
+                Todo& todo = round[i];
+                if (todo.range.size() <= std::max(kMostAtOnce, leaf_size))
+                    todo.below = splitter.split_all(todo.range);
+                else
+                    splitter.split(todo.range, todo.left, todo.right);
+            }
+        });
+        for (Todo& todo : round) {
+            if (todo.below.empty()) {
+                nodes[todo.node].halves = static_cast<std::uint32_t>(nodes.size());
+                add(todo.left);
+                add(todo.right);
+                continue;
+            }
+            const auto moved = static_cast<std::uint32_t>(nodes.size()) - 1;
+            for (BinaryNode& node : todo.below)
+                if (node.halves != 0) node.halves += moved;
+            nodes[todo.node] = todo.below.front();
+            nodes.insert(nodes.end(), todo.below.begin() + 1, todo.below.end());
+            todo.below = {};
+        }
+    }
+    return nodes;
+}
 
 // Joins binary nodes to nodes of eight lanes, such that their areas sum up to the least: the nodes that a line is
 // expected to visit (the dynamic programme of Ylitie, Karras, Laine 2017).
@@ -529,12 +596,14 @@ void set_bounds(BoxNode& node, std::uint32_t lane, const FloatBox& box) {
     }
 }
 
-BoxHierarchy build_box_hierarchy(std::size_t count, BoxOfItem box_of, std::uint32_t leaf_size, std::uint32_t granule) {
-    Splitter splitter(count, box_of, leaf_size, granule);
-    const Vector<BinaryNode> binary = splitter.split();
+BoxHierarchy build_box_hierarchy(std::size_t count, BoxOfItem box_of, std::uint32_t leaf_size, std::uint32_t granule,
+                                 Executor& executor) {
+    SplitItems items;
+    const BoxRange all = fill(items, count, box_of, executor);
+    const Vector<BinaryNode> binary = split_items(items, all, leaf_size, granule, executor);
     BoxHierarchy result;
     Collapse(binary).run(result);
-    result.order = splitter.take_order();
+    result.order = std::move(items.order);
     return result;
 }
 

@@ -2,7 +2,6 @@
 // Builds a MeshTree: groups triangles into leaves, splits by surface area, and fits a box to each node.
 #include <algorithm>
 #include <cmath>
-#include <crofton/core/drop_spare.hpp>
 #include <crofton/core/recovery.hpp>
 #include <crofton/core/select.hpp>
 #include <crofton/mesh/box_hierarchy.hpp>
@@ -47,17 +46,44 @@ std::uint32_t child_count(std::size_t leaves) {
     return static_cast<std::uint32_t>((leaves + below - 1) / below);
 }
 
+// A range that is to become a node, and where what lies below goes: the first of its nodes and of its leaves.
 struct Task {
     Range range;
-    std::uint32_t node;
+    std::uint32_t node, next_node, next_leaf;
 };
+
+// The children of a node.
+struct Children {
+    Part parts[kMeshNodeWidth];
+    std::uint32_t count = 1;
+};
+
+// The bunches of a part that go to its lower half.
+std::size_t lower_size(std::size_t size, std::uint32_t count) {
+    return (size * (count / 2) + count / 2) / count;
+}
+
+// The nodes below a node of so many leaves. The form of a tree depends on nothing else.
+std::uint32_t nodes_below(std::size_t leaves);
+std::uint32_t nodes_of_part(std::size_t size, std::uint32_t count) {
+    if (count == 1) return size == 1 ? 0 : 1 + nodes_below(size);
+    const std::size_t lower = lower_size(size, count);
+    return nodes_of_part(lower, count / 2) + nodes_of_part(size - lower, count - count / 2);
+}
+std::uint32_t nodes_below(std::size_t leaves) {
+    if (leaves <= kMeshNodeWidth) return 0;
+    return nodes_of_part(leaves, child_count(leaves));
+}
+
+// From this size on a node's children are divided on their own, perhaps at once.
+constexpr std::size_t kManyBunches = 512;
 
 }  // namespace
 
 class MeshTreeBuilder {
   public:
-    MeshTreeBuilder(const TriangleMesh& mesh, const MeshTreeOptions& options)
-        : mesh_(mesh), options_(options), last_range_(mesh.positions.size(), 0) {
+    MeshTreeBuilder(const TriangleMesh& mesh, const MeshTreeOptions& options, Executor& executor)
+        : mesh_(mesh), options_(options), executor_(executor), workers_(executor.concurrency()) {
         tree_.parts_ = Owner<MeshParts>::make();
     }
 
@@ -67,10 +93,33 @@ class MeshTreeBuilder {
     [[nodiscard]] MeshParts& made() { return *tree_.parts_; }
     void collect();
     void bunch_triangles();
-    void split_node(const Task& task);
+    // What one thread needs.
+    struct Worker {
+        MeshBoxFitter fitter;
+        Vector<glm::vec3> points;
+        Vector<std::uint32_t> point_vertices;  // indices of points
+        Vector<std::uint32_t> last_range;      // by vertex: the last range whose points it was put among
+        std::uint32_t range_number = 0;
+        Vector<Task> tasks;
+
+        void begin_range(std::size_t vertices) {
+            if (last_range.empty()) last_range.resize(vertices, 0);
+            ++range_number;
+        }
+        // Whether the vertex is met for the first time in the present range.
+        [[nodiscard]] bool is_new(std::uint32_t index) {
+            return std::exchange(last_range[index], range_number) != range_number;
+        }
+    };
+
+    void divide();
+    void fit_whole(Worker& worker);
+    Children split_node(const Task& task);
+    Task add_child(const Task& task, const Children& children, std::uint32_t lane, Worker& worker);
+    void divide_all(const Task& task, Worker& worker);
     Part split(Part& part);
-    MeshBox fit(const Range& range, bool by_all = false);
-    std::uint32_t add_leaf(std::uint32_t bunch);
+    MeshBox fit(const Range& range, bool whole_mesh, Worker& worker) const;
+    void add_leaf(std::uint32_t bunch, std::uint32_t number);
     [[nodiscard]] std::span<const std::uint32_t> triangles_of(std::uint32_t bunch) const {
         const BoxHierarchy::Leaf& leaf = hierarchy_.leaves[bunch];
         return std::span<const std::uint32_t>(hierarchy_.order).subspan(leaf.begin, leaf.end - leaf.begin);
@@ -81,13 +130,10 @@ class MeshTreeBuilder {
         return mesh_.positions[mesh_.indices[3 * std::size_t{triangle} + v]];
     }
 
-    // Whether the vertex is met for the first time in the present range.
-    [[nodiscard]] bool is_new(std::uint32_t index) {
-        return std::exchange(last_range_[index], range_number_) != range_number_;
-    }
-
     const TriangleMesh& mesh_;
     MeshTreeOptions options_;
+    Executor& executor_;
+    Vector<Worker> workers_;
     MeshTree tree_;
     Vector<std::uint32_t> triangles_;  // the valid ones, ascending
     BoxHierarchy hierarchy_;           // of triangles; its leaves are the bunches
@@ -101,13 +147,7 @@ class MeshTreeBuilder {
     // The vertices of each bunch, one after the other, each once in its bunch; where those of a bunch begin.
     Vector<Vertex> bunch_vertices_;
     Vector<std::uint32_t> first_vertex_;
-    Vector<Task> tasks_;
-    MeshBoxFitter fitter_;
     Vector<std::uint32_t> piece_of_;  // by triangle
-    Vector<glm::vec3> points_;
-    Vector<std::uint32_t> point_vertices_;  // indices of points_
-    Vector<std::uint32_t> last_range_;      // by vertex: the last range whose points it was put among
-    std::uint32_t range_number_ = 0;
 };
 
 void MeshTreeBuilder::collect() {
@@ -140,21 +180,22 @@ void MeshTreeBuilder::bunch_triangles() {
         for (std::size_t v = 0; v < 3; ++v) box.include(vertex(triangles_[i], v));
         return box;
     };
-    hierarchy_ = build_box_hierarchy(triangles_.size(), box_of, kMeshLeafWidth, kMeshLeafWidth);
+    hierarchy_ = build_box_hierarchy(triangles_.size(), box_of, kMeshLeafWidth, kMeshLeafWidth, executor_);
     for (std::uint32_t& item : hierarchy_.order) item = triangles_[item];
     bunches_.reserve(hierarchy_.leaves.size());
     first_vertex_.reserve(hierarchy_.leaves.size() + 1);
     bunch_vertices_.reserve(2 * mesh_.positions.size());
+    Worker& worker = workers_.front();
     for (std::uint32_t b = 0; b < hierarchy_.leaves.size(); ++b) {
         glm::vec3 sum(0.0f);
         const std::span<const std::uint32_t> triangles = triangles_of(b);
         for (const std::uint32_t t : triangles) sum += (vertex(t, 0) + vertex(t, 1) + vertex(t, 2)) * (1.0f / 3.0f);
         bunches_.push_back({sum * (1.0f / static_cast<float>(triangles.size())), b, 0.0f});
         first_vertex_.push_back(static_cast<std::uint32_t>(bunch_vertices_.size()));
-        ++range_number_;
+        worker.begin_range(mesh_.positions.size());
         for (const std::uint32_t t : triangles)
             for (std::size_t v = 0; v < 3; ++v)
-                if (const std::uint32_t index = lowest_[mesh_.indices[3 * std::size_t{t} + v]]; is_new(index))
+                if (const std::uint32_t index = lowest_[mesh_.indices[3 * std::size_t{t} + v]]; worker.is_new(index))
                     bunch_vertices_.push_back({mesh_.positions[index], index});
     }
     first_vertex_.push_back(static_cast<std::uint32_t>(bunch_vertices_.size()));
@@ -180,7 +221,7 @@ Part MeshTreeBuilder::split(Part& part) {
     const glm::vec3 direction(frame[longest]);
     for (auto bunch = begin; bunch != end; ++bunch) bunch->key = glm::dot(bunch->centroid, direction);
     const std::uint32_t below = part.count / 2;
-    const std::size_t cut = (range.size() * below + part.count / 2) / part.count;
+    const std::size_t cut = lower_size(range.size(), part.count);
     crofton::detail::select(begin, begin + static_cast<std::ptrdiff_t>(cut), end, [](const Bunch& a, const Bunch& b) {
         return a.key < b.key || (a.key == b.key && a.number < b.number);
     });
@@ -189,23 +230,27 @@ Part MeshTreeBuilder::split(Part& part) {
     return upper;
 }
 
-MeshBox MeshTreeBuilder::fit(const Range& range, bool by_all) {
-    ++range_number_;
-    points_.clear();
-    point_vertices_.clear();
-    for (std::size_t b = range.begin; b < range.end; ++b)
-        for (std::uint32_t i = first_vertex_[bunches_[b].number]; i < first_vertex_[bunches_[b].number + 1]; ++i) {
+// Leaves the points with the worker. The whole mesh is in the bunches' first order, for its box can be made at any
+// time.
+MeshBox MeshTreeBuilder::fit(const Range& range, bool whole_mesh, Worker& worker) const {
+    worker.begin_range(mesh_.positions.size());
+    worker.points.clear();
+    worker.point_vertices.clear();
+    for (std::size_t b = range.begin; b < range.end; ++b) {
+        const std::size_t bunch = whole_mesh ? b : bunches_[b].number;
+        for (std::uint32_t i = first_vertex_[bunch]; i < first_vertex_[bunch + 1]; ++i) {
             const Vertex& vertex = bunch_vertices_[i];
-            if (range.size() > 1 && !is_new(vertex.index)) continue;  // a bunch has each once
-            points_.push_back(vertex.position);
-            if (options_.refittable) point_vertices_.push_back(vertex.index);
+            if (range.size() > 1 && !worker.is_new(vertex.index)) continue;  // a bunch has each once
+            worker.points.push_back(vertex.position);
+            if (options_.refittable) worker.point_vertices.push_back(vertex.index);
         }
-    return fitter_.fit(points_, options_.boxes, by_all);
+    }
+    return worker.fitter.fit(worker.points, options_.boxes, whole_mesh);
 }
 
-std::uint32_t MeshTreeBuilder::add_leaf(std::uint32_t bunch) {
-    MeshLeaf& leaf = made().leaves.emplace_back();
-    LeafVertices* const vertices = options_.refittable ? &made().refit.leaves.emplace_back() : nullptr;
+void MeshTreeBuilder::add_leaf(std::uint32_t bunch, std::uint32_t number) {
+    MeshLeaf& leaf = made().leaves[number];
+    LeafVertices* const vertices = options_.refittable ? &made().refit.leaves[number] : nullptr;
     const std::span<const std::uint32_t> triangles = triangles_of(bunch);
     leaf.count = static_cast<std::uint32_t>(triangles.size());
     for (std::size_t lane = 0; lane < kMeshLeafWidth; ++lane) {
@@ -218,37 +263,119 @@ std::uint32_t MeshTreeBuilder::add_leaf(std::uint32_t bunch) {
             if (vertices != nullptr) vertices->vertex[v][lane] = mesh_.indices[3 * std::size_t{triangle} + v];
         }
     }
-    return leaf_of_[bunch] = static_cast<std::uint32_t>(made().leaves.size() - 1);
+    leaf_of_[bunch] = number;
 }
 
-void MeshTreeBuilder::split_node(const Task& task) {
-    Part parts[kMeshNodeWidth] = {{task.range, child_count(task.range.size())}};
-    std::uint32_t count = 1;
-    for (std::uint32_t i = 0; i < count; ++i)
-        while (parts[i].count > 1) parts[count++] = split(parts[i]);
-    MeshNode node{};
-    BoxAnchors anchors{};
-    node.count = count;
-    for (std::uint32_t lane = 0; lane < count; ++lane) {
-        const Range& range = parts[lane].range;
-        const MeshBox box = fit(range);
-        for (int k = 0; k < 3; ++k) {
-            node.center[k][lane] = box.center[k];
-            node.half[k][lane] = box.half[k];
-            for (int i = 0; i < 3; ++i) node.axes[k][i][lane] = box.axes[k][i];
-        }
-        if (options_.refittable) set_anchors(box, points_, point_vertices_, lane, anchors);
-        if (range.size() == 1) {
-            node.child[lane] = kMeshLeaf | add_leaf(bunches_[range.begin].number);
-        } else {
-            node.child[lane] = static_cast<std::uint32_t>(made().nodes.size());
-            made().nodes.emplace_back();
-            if (options_.refittable) made().refit.nodes.emplace_back();
-            tasks_.push_back({range, node.child[lane]});
-        }
+Children MeshTreeBuilder::split_node(const Task& task) {
+    Children result;
+    result.parts[0] = {task.range, child_count(task.range.size())};
+    for (std::uint32_t i = 0; i < result.count; ++i)
+        while (result.parts[i].count > 1) result.parts[result.count++] = split(result.parts[i]);
+    made().nodes[task.node].count = result.count;
+    return result;
+}
+
+// Writes a lane of a node that is split, and returns what is to be divided further: nothing below a leaf. Nodes'
+// children stand side by side; behind them is what lies below the last of them, then below the one before it.
+Task MeshTreeBuilder::add_child(const Task& task, const Children& children, std::uint32_t lane, Worker& worker) {
+    const Range& range = children.parts[lane].range;
+    MeshNode& node = made().nodes[task.node];
+    const MeshBox box = fit(range, false, worker);
+    for (int k = 0; k < 3; ++k) {
+        node.center[k][lane] = box.center[k];
+        node.half[k][lane] = box.half[k];
+        for (int i = 0; i < 3; ++i) node.axes[k][i][lane] = box.axes[k][i];
     }
-    made().nodes[task.node] = node;
-    if (options_.refittable) made().refit.nodes[task.node] = anchors;
+    if (options_.refittable)
+        set_anchors(box, worker.points, worker.point_vertices, lane, made().refit.nodes[task.node]);
+    Task child{range, task.next_node, task.next_node, task.next_leaf};
+    std::uint32_t leaf = task.next_leaf;
+    for (std::uint32_t other = 0; other < children.count; ++other) {
+        const std::size_t size = children.parts[other].range.size();
+        const std::uint32_t before = other < lane ? 1 : 0;
+        if (size == 1) {
+            leaf += before;
+            ++child.next_leaf;
+            continue;
+        }
+        child.node += before;
+        ++child.next_node;
+        if (other <= lane) continue;
+        child.next_node += nodes_below(size);
+        child.next_leaf += static_cast<std::uint32_t>(size);
+    }
+    if (range.size() > 1) {
+        node.child[lane] = child.node;
+        return child;
+    }
+    node.child[lane] = kMeshLeaf | leaf;
+    add_leaf(bunches_[range.begin].number, leaf);
+    return {};
+}
+
+// Divides down to leaves.
+void MeshTreeBuilder::divide_all(const Task& all, Worker& worker) {
+    worker.tasks.assign(1, all);
+    while (!worker.tasks.empty()) {
+        const Task task = worker.tasks.back();
+        worker.tasks.pop_back();
+        const Children children = split_node(task);
+        for (std::uint32_t lane = 0; lane < children.count; ++lane)
+            if (const Task child = add_child(task, children, lane, worker); child.range.size() > 0)
+                worker.tasks.push_back(child);
+    }
+}
+
+// Divides all bunches: a level of large nodes in each round, small ones down to leaves. Whatever is written has its
+// place beforehand, so that it does not matter who writes it when.
+void MeshTreeBuilder::divide() {
+    struct Lane {
+        std::size_t task;
+        std::uint32_t lane;
+        Task child;
+    };
+    made().leaves.resize(bunches_.size());
+    made().nodes.resize(1 + nodes_below(bunches_.size()));
+    if (options_.refittable) {
+        made().refit.leaves.resize(made().leaves.size());
+        made().refit.nodes.resize(made().nodes.size());
+    }
+    Vector<Task> tasks{{{0, bunches_.size()}, 0, 1, 0}};
+    Vector<Children> children;
+    Vector<Lane> lanes{{0, kMeshNodeWidth, {}}};  // the whole mesh's box, besides the first round's
+    while (!tasks.empty()) {
+        children.resize(tasks.size());
+        crofton::detail::recoverable_for(executor_, tasks.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
+            for (std::size_t t = begin; t < end; ++t) children[t] = split_node(tasks[t]);
+        });
+        for (std::size_t t = 0; t < tasks.size(); ++t)
+            for (std::uint32_t lane = 0; lane < children[t].count; ++lane) lanes.push_back({t, lane, {}});
+        crofton::detail::recoverable_for(
+            executor_, lanes.size(), 1, [&](std::size_t begin, std::size_t end, unsigned number) {
+                Worker& worker = workers_[number];
+                for (std::size_t i = begin; i < end; ++i) {
+                    Lane& at = lanes[i];
+                    if (at.lane == kMeshNodeWidth) {
+                        fit_whole(worker);
+                        continue;
+                    }
+                    at.child = add_child(tasks[at.task], children[at.task], at.lane, worker);
+                    const std::size_t size = at.child.range.size();
+                    if (size == 0 || size > kManyBunches) continue;
+                    divide_all(at.child, worker);
+                    at.child = {};
+                }
+            });
+        tasks.clear();
+        for (const Lane& lane : lanes)
+            if (lane.child.range.size() > 0) tasks.push_back(lane.child);
+        lanes.clear();
+    }
+}
+
+void MeshTreeBuilder::fit_whole(Worker& worker) {
+    made().root_box = fit({0, bunches_.size()}, true, worker);  // depths are along its axes
+    if (options_.refittable) set_anchors(made().root_box, worker.points, worker.point_vertices, 0, made().refit.root);
 }
 
 void MeshTreeBuilder::set_pieces(std::span<const std::uint32_t> triangles) {
@@ -298,28 +425,12 @@ Result<MeshTree> MeshTreeBuilder::build() {
     tree_.triangle_count_ = triangles_.size();
     set_pieces(triangles_);
     bunch_triangles();
-    made().leaves.reserve(bunches_.size());
-    if (options_.refittable) made().refit.leaves.reserve(bunches_.size());
-    const Range all{0, bunches_.size()};
-    made().root_box = fit(all, true);  // depths are along its axes
-    made().nodes.emplace_back();
-    if (options_.refittable) {
-        set_anchors(made().root_box, points_, point_vertices_, 0, made().refit.root);
-        made().refit.nodes.emplace_back();
-        made().refit.vertex_count = mesh_.positions.size();
-    }
-    tasks_.push_back({all, 0});
-    while (!tasks_.empty()) {
-        const Task task = tasks_.back();
-        tasks_.pop_back();
-        split_node(task);
-    }
+    divide();
+    if (options_.refittable) made().refit.vertex_count = mesh_.positions.size();
     if (options_.refittable) {
         set_leaf_ranges(0);
         made().refit.root.end_leaf[0] = static_cast<std::uint32_t>(made().leaves.size());
     }
-    crofton::detail::drop_spare(made().nodes);
-    crofton::detail::drop_spare(made().refit.nodes);
     if (options_.rays) made().take_ray_nodes(std::move(hierarchy_.nodes), leaf_of_);
     return std::move(tree_);
 }
@@ -359,8 +470,8 @@ MeshTree& MeshTree::operator=(const MeshTree& other) {
     return *this = MeshTree(other);
 }
 
-Result<MeshTree> MeshTree::build(const TriangleMesh& mesh, const MeshTreeOptions& options) {
-    return detail::recover([&]() -> Result<MeshTree> { return MeshTreeBuilder(mesh, options).build(); });
+Result<MeshTree> MeshTree::build(const TriangleMesh& mesh, const MeshTreeOptions& options, Executor& executor) {
+    return detail::recover([&]() -> Result<MeshTree> { return MeshTreeBuilder(mesh, options, executor).build(); });
 }
 
 }  // namespace crofton::mesh

@@ -36,9 +36,9 @@ struct BoxHierarchy {
 // Splits by surface area in sixteen bins. The chance that a uniform line meets a box inside another is exactly the
 // ratio of their surface areas (theory.md, section 2). So this is the one criterion that fits, also for which of the
 // splits share a node. Leaves hold up to `leaf_size` items; they mostly hold a multiple of `granule`, a power of two up
-// to 16. The same hierarchy on every machine. Requires 1 to 2^30 items, none of their boxes empty.
+// to 16. The same hierarchy on every machine and for any executor. Requires 1 to 2^30 items, none of their boxes empty.
 using BoxOfItem = FunctionRef<FloatBox(std::size_t item)>;
 [[nodiscard]] BoxHierarchy build_box_hierarchy(std::size_t count, BoxOfItem box_of, std::uint32_t leaf_size,
-                                               std::uint32_t granule = 1);
+                                               std::uint32_t granule = 1, Executor& executor = serial_executor());
 
 }  // namespace crofton::mesh
