@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Baked scenes whose checksums are right, whatever they hold: an adversary would have made them so, too.
+#include <crofton/bake/baked_region.hpp>
 #include <crofton/bake/baked_scene.hpp>
+#include <crofton/crofton.hpp>
 #include <crofton/depth/depth_culler.hpp>
 #include <cstring>
 
@@ -44,6 +46,30 @@ void read_all(const bake::BakedScene& scene) {
     (void)seen;
 }
 
+// Attaches the scene as a region, and asks each object and the whole.
+void ask_region(bake::BakedScene&& scene) {
+    const auto region = bake::prepare_region(std::move(scene));
+    if (!region) return;
+    World world;
+    const auto handle = world.attach(*region, {1000.0, 0.0, 0.5});
+    if (!handle) return;
+    (void)world.add({.bound = Sphere{region->bounds().min + glm::dvec3(1000.0, 0.0, 0.5), 1.0}});
+    if (!world.update()) std::abort();
+    Camera camera;
+    camera.position = {998.0, 0.0, 0.0};
+    camera.forward = {1.0, 0.0, 0.0};
+    ViewResult visible;
+    for (const auto order : {cull::ResultOrder::tree, cull::ResultOrder::ascending})
+        if (world.view({.camera = camera, .order = order}, visible))
+            for (std::size_t i = 0; i < visible.size(); ++i)
+                if (!world.contains(visible[i].object)) std::abort();
+    (void)world.raycast({camera.position, camera.forward});
+    Vector<ObjectRef> found;
+    world.overlap(Sphere{{1000.0, 0.0, 0.0}, 2.0}, found);
+    for (std::uint32_t i = 0; i < region->object_count(); ++i)
+        if (!world.box_of(*world.object_in(*handle, i))) std::abort();
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -54,5 +80,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (!scene) return 0;
     read_all(*scene);
     fuzz::query(scene->tree());
+    ask_region(std::move(*scene));
     return 0;
 }
