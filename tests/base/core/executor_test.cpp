@@ -102,6 +102,22 @@ TEST_SUITE("core/executor") {
     }
 
 #ifdef CLOCK_THREAD_CPUTIME_ID
+    TEST_CASE("threads that sleep since an earlier call work on the next one") {
+        using namespace std::chrono_literals;
+        ThreadPool pool(2);
+        std::this_thread::sleep_for(100ms);  // the other thread has gone to sleep
+        std::atomic<int> inside{0};
+        std::atomic<bool> together{false};
+        pool.parallel_for(2, 1, [&](std::size_t, std::size_t, unsigned) {
+            ++inside;
+            const auto end = std::chrono::steady_clock::now() + 3s;
+            while (inside < 2 && !together && std::chrono::steady_clock::now() < end) std::this_thread::sleep_for(1ms);
+            if (inside == 2) together = true;
+            --inside;
+        });
+        CHECK(together);
+    }
+
     TEST_CASE("a caller that waits for another thread's long body sleeps") {
         const auto processor_seconds = [] {
             timespec now{};
