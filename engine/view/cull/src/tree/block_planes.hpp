@@ -54,7 +54,7 @@ ScaledPlane scaled_plane(const KernelView& view, std::size_t i, const Block& blo
 inline BlockPlane block_plane(const KernelView& view, std::size_t i, const boxtree::Node& node) {
     const ScaledPlane plane = scaled_plane(view, i, node);
     return {static_cast<std::int32_t>(std::max(-kMostOffset, std::min(kMostOffset, plane.offset))),
-            static_cast<std::int32_t>(std::min(plane.error_bound, 0x7fffffff * 1.0))};
+            static_cast<std::int32_t>(std::min(0x7fffffff * 1.0, plane.error_bound))};  // NaN decides nothing
 }
 
 // A leaf's plane must not claim a cut that is not certain. So a plane whose offset does not fit decides nothing.
