@@ -233,7 +233,7 @@ TEST_CASE("bytes of clusters that are cut off or changed are refused or harmless
 
 // Bytes of a mesh whose clusters have one triangle each, and where their lists begin.
 struct StoredBytes {
-    static constexpr std::size_t kHeader = 76, kCorners = 8, kVertices = 12, kLargest = 16;  // counts are words
+    static constexpr std::size_t kHeader = 76, kCorners = 8, kLargest = 16;  // counts are words
 
     Vector<std::byte> bytes;
     std::size_t boxes, order, corners;
