@@ -31,11 +31,6 @@ Error damaged(const char* section, const char* what, std::uint64_t item = kNoIte
     return fail(ErrorCode::parse, item, std::string("section '") + section + "': " + what);
 }
 
-std::string_view name_of(const bake::Section& section) {
-    const char* const end = std::find(section.name, section.name + sizeof section.name, '\0');
-    return {section.name, static_cast<std::size_t>(end - section.name)};
-}
-
 bool is_finite(const glm::dvec3& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
@@ -136,9 +131,7 @@ Result<Vector<std::byte>> bake_source(const SceneSource& source, Executor& execu
     const auto reader = bake::Reader::open(*file, executor);
     if (!reader) return reader.error();
     bake::Writer writer;
-    for (const bake::Section& section : reader->sections())
-        writer.add_bytes(name_of(section), std::span(*file).subspan(section.offset, section.size),
-                         section.element_size);
+    for (const bake::Section& section : reader->sections()) writer.copy(section, *file);
     add_visit(source, writer);
     return writer.finish();
 }

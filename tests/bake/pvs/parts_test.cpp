@@ -145,7 +145,7 @@ TEST_SUITE("pvs/parts") {
                 const std::string_view name(section.name, 8);
                 change(name, bytes);
                 bytes.resize(bytes.size() / section.element_size * section.element_size);
-                writer.add_bytes(name.substr(0, name.find('\0')), bytes, section.element_size);
+                writer.add_bytes(name.substr(0, name.find('\0')), bytes, section.element_size, section.version);
             }
             const auto file = writer.finish();
             return job.start().add_state(file).has_value();
@@ -181,7 +181,7 @@ TEST_SUITE("pvs/parts") {
                 for (const std::uint64_t end : {first + 4 * i, first + 4 * i + 1}) ranges.push_back(end);
             bake::Writer writer;
             writer.add("pvs_bake", std::span(&header, 1));
-            writer.add_bytes("pvs_done", std::as_bytes(std::span(ranges)), 16);
+            writer.add_bytes("pvs_done", std::as_bytes(std::span(ranges)), 16, 0);
             writer.add("pvs_flag", std::span(&flags, 1));
             writer.add("pvs_seen", std::span(&seen, 1));
             return writer.finish();

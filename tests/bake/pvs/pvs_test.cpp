@@ -120,7 +120,7 @@ TEST_SUITE("pvs/pvs") {
                             file.begin() + static_cast<std::ptrdiff_t>(section.offset + section.size));
                         if (&section == &which) bytes[at] = value;
                         const std::string_view name(section.name, 8);
-                        writer.add_bytes(name.substr(0, name.find('\0')), bytes, section.element_size);
+                        writer.add_bytes(name.substr(0, name.find('\0')), bytes, section.element_size, section.version);
                     }
                     const auto forged = writer.finish();
                     const auto read = Pvs::from_memory(forged);
@@ -152,7 +152,7 @@ TEST_SUITE("pvs/pvs") {
             if (name == "pvs_kind") bytes.assign(1 << 21, std::byte{2});
             if (name == "pvs_from") bytes.assign(16 * sizeof(std::uint64_t), std::byte{0xff});
             if (name == "pvs_pair") bytes.assign(200'000, std::byte{0xff});
-            writer.add_bytes(name, bytes, section.element_size);
+            writer.add_bytes(name, bytes, section.element_size, section.version);
         }
         const auto large = writer.finish();
         CHECK(error_of(Pvs::from_memory(large)).code == ErrorCode::out_of_range);

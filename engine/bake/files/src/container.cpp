@@ -85,6 +85,10 @@ void Writer::add_bytes(std::string_view name, std::span<const std::byte> bytes, 
     contents_.emplace_back(bytes.begin(), bytes.end());
 }
 
+void Writer::copy(const Section& section, std::span<const std::byte> file) {
+    add_bytes(name_of(section), file.subspan(section.offset, section.size), section.element_size, section.version);
+}
+
 Vector<std::byte> Writer::finish() {
     std::size_t end = sizeof(Header) + sections_.size() * sizeof(Section);
     for (Section& section : sections_) {

@@ -152,8 +152,7 @@ Result<Vector<std::byte>> Pvs::to_file(std::span<const std::byte> scene_file) co
             for (const bake::Section& section : reader->sections()) {
                 if (name_of(section).substr(0, 4) == "pvs_")
                     return fail(ErrorCode::invalid_argument, kNoItem, "the scene file has visible sets already");
-                writer.add_bytes(name_of(section), scene_file.subspan(section.offset, section.size),
-                                 section.element_size);
+                writer.copy(section, scene_file);
             }
         }
         PvsFile::add(*this, writer);

@@ -45,11 +45,13 @@ class Writer {
     // The elements are copied. Requires a new name of at most 8 characters; fewer than kMaxSections sections.
     template <class T>
     void add(std::string_view name, std::span<const T> elements) {
-        add_bytes(name, std::as_bytes(elements), sizeof(T));
+        add_bytes(name, std::as_bytes(elements), sizeof(T), 0);
     }
-    // The same for elements of a size that is known only now, as those of another file's section.
+    // The same for elements of a size that is known only now.
     void add_bytes(std::string_view name, std::span<const std::byte> bytes, std::size_t element_size,
-                   std::uint32_t version = 0);
+                   std::uint32_t version);
+    // Adds a section of another file as it is.
+    void copy(const Section& section, std::span<const std::byte> file);
     // The whole file.
     [[nodiscard]] Vector<std::byte> finish();
 
