@@ -42,7 +42,7 @@ MeshDescription description_of(const PyMesh& mesh) {
             .indices = std::span<const std::uint32_t>(triangles.indices)};
 }
 
-// What add_mesh and replace_mesh are given; calls f with its description.
+// Makes the description of a mesh from the arguments of add_mesh and replace_mesh, and calls f with it.
 template <class F>
 auto with_mesh(const py::handle& positions, const py::object& indices, bool triangles, bool occluders, bool clusters,
                bool one_sided, const std::shared_ptr<const depth::ClusteredMesh>& precut, F&& f) {

@@ -93,7 +93,7 @@ class MeshTreeBuilder {
     [[nodiscard]] MeshParts& made() { return *tree_.parts_; }
     void collect();
     void bunch_triangles();
-    // What one thread needs.
+    // The scratch memory of one thread.
     struct Worker {
         MeshBoxFitter fitter;
         Vector<glm::vec3> points;
