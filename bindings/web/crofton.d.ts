@@ -107,9 +107,54 @@ export interface Triangulator extends Owned {
     triangulate(points: Float64Array, ringEnds?: number[], method?: 'ear' | 'delaunay' | 'minimumWeight'): Triangulation;
 }
 /** Never changes; what uses it keeps what it needs. */
-export interface Shape extends Owned {}
+export interface Shape extends Owned {
+    /** The box along the axes that contains it in its frame; infinite for half-spaces. */
+    readonly bounds: { min: number[]; max: number[] };
+    /** For density 1, in its frame; `inertia`: nine numbers, about the center. Error: surfaces have no mass. */
+    readonly mass: { volume: number; center: number[]; inertia: number[] };
+}
+/** A child of a compound, or a triangle of a mesh or height field. */
+export interface Part { child: number; triangle: number }
+/** Proved: the true distance or depth is from `lower` to `upper`. `normal`: unit, from a to b. */
+export interface ShapePair { lower: number; upper: number; onA: number[]; onB: number[]; normal: number[]; partA: Part; partB: Part }
+export interface Impact {
+    time: number;
+    /** The gap at that time; negative: how deep they overlap, from the start. */
+    distance: number; onA: number[]; onB: number[]; normal: number[]; partA: Part; partB: Part;
+    /** `maxSteps` was too small: they do not touch before `time`. */
+    unresolved: boolean;
+}
+export interface DepthObject {
+    mesh: ClusteredMesh;
+    /** Sixteen numbers by columns: takes positions of the mesh to clip space, as the vertex shader does. */
+    toClip: Vector;
+    oneSided?: boolean;
+    /** False for alpha-tested and transparent objects. */
+    hides?: boolean;
+    /** By how much drawn vertices may be off, besides rounding. */
+    positionError?: number;
+}
+export interface Picture { width?: number; height?: number; depth?: Depth; samples?: number }
+/** Finds the triangles of pictures and of shadow maps of meshes that no World holds. */
+export interface DepthCuller extends Owned {
+    findVisible(objects: DepthObject[], picture?: Picture): DepthCuller;
+    /** `toClip` of the casters leads to the clip space of the shadow map. `seen` last answered for the camera's picture, `objects` are those of
+     * that call; without a `mesh` where nothing of it was listed; `solid`: anything within the mesh's bound may be seen. */
+    findCasters(objects: DepthObject[], map: Picture, receivers: { seen: DepthCuller;
+        objects: { mesh?: ClusteredMesh; toMap: Vector; solid?: boolean }[]; radius?: number }): DepthCuller;
+    /** As in ViewResult; views until the next call. `object` is a place in the list. */
+    readonly triangleWords: Uint32Array;
+    readonly triangles: { object: number; cluster: number; triangles: bigint }[];
+    readonly statistics: Record<'objectsListed' | 'objectsAsked' | 'clustersAsked' | 'clustersDrawn' | 'trianglesDrawn' | 'trianglesListed', number>;
+    /** A lower bound at a pixel of the last picture; minus infinity where nothing is proved to cover it. Row 0 is at the bottom. */
+    nearness(x: number, y: number): number;
+}
+/** Bit k of an answer's `triangles` is triangle `triangleOrder[firstTriangle + k]` of the mesh. */
+export interface Clusters { clusters: { firstTriangle: number; triangleCount: number }[]; triangleOrder: Uint32Array }
 /** A mesh cut into clusters. */
 export interface ClusteredMesh extends Owned {
+    /** A copy. */
+    readonly clusters: Clusters;
     /** A copy, to store. */
     readonly bytes: Uint8Array;
 }
@@ -153,7 +198,7 @@ export interface ViewRequest {
     camera?: Camera; matrix?: Vector; depth?: Depth; origin?: Vector; volume?: Frustum; layers?: number;
     occlusion?: { listOccluded?: boolean; width?: number; height?: number; maxOccluders?: number; leastCover?: number };
     /** Instead of occlusion; `depth` is the depth range of the projection, 'reversed' by default; `samples` in each pixel: 1, 2, 4 or 8. */
-    picture?: { width?: number; height?: number; depth?: Depth; samples?: number };
+    picture?: Picture;
     /** With a picture that is a light's shadow map: lists only the triangles whose shadows a camera could see. `seen` is the answer to the
      * camera's view, with a picture; `radius`, 1 by default: how far a lookup's texels are from its point along each axis. */
     receivers?: { seen: ViewResult; radius?: number };
@@ -165,8 +210,10 @@ export interface ViewRequest {
 export interface World extends Owned {
     readonly count: number;
     addMesh(positions: Float32Array, indices: Uint32Array | Uint16Array, how?: MeshOptions): MeshHandle;
+    /** Gives its objects other triangles. Removes its occluders. */
+    replaceMesh(mesh: MeshHandle, positions: Float32Array, indices: Uint32Array | Uint16Array, how?: MeshOptions): void;
     setVertices(mesh: MeshHandle, positions: Float32Array): void;
-    clustersOf(mesh: MeshHandle): { clusters: { firstTriangle: number; triangleCount: number }[]; triangleOrder: Uint32Array };
+    clustersOf(mesh: MeshHandle): Clusters;
     /** Error: objects use the mesh. */
     removeMesh(mesh: MeshHandle): void;
     findOccluders(mesh: MeshHandle): void;
@@ -197,6 +244,9 @@ export interface World extends Owned {
     /** `camera` or `volume`, or both: then objects are tested against the volume, and hidden from the camera. */
     view(request: ViewRequest | ViewRequest[], visible: ViewResult): ViewResult;
     raycast(origin: Vector, direction: Vector, maxT?: number, layers?: number): ObjectHit | null;
+    /** Three numbers each. `t` is infinite where nothing is hit, the object's index and the triangle are -1. */
+    raycastMany(origins: Float64Array, directions: Float64Array, maxT?: number, layers?: number):
+        { t: Float64Array; objects: Int32Array; triangles: Int32Array; normals: Float64Array };
     raycastAll(origin: Vector, direction: Vector, maxT?: number, layers?: number): ObjectHit[];
     raycastAny(origin: Vector, direction: Vector, maxT?: number, layers?: number): boolean;
     /** The first object that a moving shape meets; objects are at rest. */
@@ -223,6 +273,7 @@ export interface Crofton {
     readonly World: new (options?: { pairs?: boolean; contacts?: boolean; containment?: boolean; meshDepth?: boolean; contactMargin?: number }) => World;
     readonly Shape: new (description: ShapeDescription) => Shape;
     readonly ClusteredMesh: { new (positions: Float32Array, indices: ArrayLike<number>, how?: { maxTriangles?: number }): ClusteredMesh; new (bytes: Uint8Array): ClusteredMesh };
+    readonly DepthCuller: new () => DepthCuller;
     readonly Region: new (objects: RegionObject[], how?: { meshes?: ({ positions: Float32Array; indices: Uint32Array | Uint16Array } & MeshOptions)[]; findOccluders?: boolean }) => Region;
     readonly ViewResult: new () => ViewResult;
     cullBoxes(boxes: Boxes, frustum: Frustum, visible: ViewResult, how?: CullOptions): ViewResult;
@@ -230,6 +281,22 @@ export interface Crofton {
     classify(boxes: Boxes, frustum: Frustum): Uint8Array;
     fitBox(points: Float32Array | Float64Array, how?: { quality?: 'fast' | 'tight' | 'exact';
         criterion?: { volume?: number; area?: number; meanCurvature?: number } }): Box;
+    /** Of two shapes, without a World. Touching counts. */
+    touches(a: Placed | Shape, b: Placed | Shape): boolean;
+    /** 0 if they overlap. */
+    distance(a: Placed | Shape, b: Placed | Shape): ShapePair & { distance: number };
+    /** Moving b by depth times normal ends the overlap; null: there is none. */
+    penetration(a: Placed | Shape, b: Placed | Shape): (ShapePair & { depth: number }) | null;
+    /** The deepest contact, up to `maxPoints` points, 4 by default and at most 8. `margin`: gaps of up to this count. */
+    contacts(a: Placed | Shape, b: Placed | Shape, how?: { margin?: number; maxPoints?: number }):
+        { normal: number[]; depth: number; points: { position: number[]; depth: number; partA: Part; partB: Part }[] };
+    /** The first touch of two moving shapes; `duration`, `tolerance`, `maxSteps` and `ignoreInitialOverlaps` are those of the first motion. */
+    cast(a: Placed | Shape, motion: Motion, b: Placed | Shape, motionOfB?: Pick<Motion, 'velocity' | 'spin' | 'pivot'>): Impact | null;
+    /** The point of a shape that is nearest to `point`; `distance` is 0 inside a solid; `normal`: unit, from `point` to the shape. */
+    closestPoint(shape: Placed | Shape, point: Vector): { distance: number; point: number[]; normal: number[]; part: Part };
+    /** Triangles, meshes and height fields have no inside. */
+    raycast(shape: Placed | Shape, origin: Vector, direction: Vector, maxT?: number):
+        { t: number; point: number[]; normal: number[]; part: Part; startedInside: boolean } | null;
     setLogger(logger: ((level: number, message: string) => void) | null): void;
     log(level: number, message: string): void;
 }

@@ -4,9 +4,11 @@ import { Memory } from './memory.js';
 import { loadModule } from './load.js';
 import { Boxes, Frustum } from './geometry.js';
 import { Tree, cullBoxes, classify } from './cull.js';
+import { DepthCuller } from './depth.js';
 import { fitBox } from './fit.js';
 import { Triangulator } from './triangulate.js';
 import { Region } from './region.js';
+import * as queries from './queries.js';
 import { ClusteredMesh, Shape } from './shape.js';
 import { ViewResult } from './views.js';
 import { World } from './world.js';
@@ -23,7 +25,8 @@ export async function loadLibrary(build, options = {}) {
         get memoryBytes() { return memory.bytes.byteLength; },
         Boxes: bind(Boxes), Frustum: bind(Frustum), Tree: bind(Tree),
         Triangulator: bind(Triangulator), World: bind(World), ViewResult: bind(ViewResult), Region: bind(Region), Shape: bind(Shape),
-        ClusteredMesh: bind(ClusteredMesh),
+        ClusteredMesh: bind(ClusteredMesh), DepthCuller: bind(DepthCuller),
+        ...Object.fromEntries(Object.entries(queries).map(([name, query]) => [name, (...given) => query(memory, ...given)])),
         cullBoxes: (boxes, frustum, visible, how) => cullBoxes(memory, boxes, frustum, visible, how),
         classify: (boxes, frustum) => classify(memory, boxes, frustum),
         fitBox: (points, how) => fitBox(memory, points, how),

@@ -38,6 +38,10 @@ export function writeTransform(memory, at, transform) {
     memory.doubles.set([0, 1, 2, 3].flatMap(column), at >> 3);
     return at;
 }
+export function writeRay({ doubles }, at, origin, direction, maxT) {
+    doubles.set([...numbersOf(origin, 3, 'origin'), ...numbersOf(direction, 3, 'direction'), maxT], at >> 3);
+    return at;
+}
 export const IDENTITY = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
 
 export function writeBox({ doubles, floats }, at, { center, axes = [1, 0, 0, 0, 1, 0, 0, 0, 1], halfExtents }) {
@@ -51,6 +55,19 @@ export function writeBound(memory, at, { box, sphere }) {
     if (sphere) doubles.set([...numbersOf(sphere.center, 3, 'center'), sphere.radius], at + 128 >> 3);
     else writeBox(memory, at + 8, box);
 }
+
+/** The places and counts of a crofton_clusters, copied. */
+export function clustersAt({ words }, at) {
+    const [clusters, count, order, triangles] = words.subarray(at >> 2, at + 16 >> 2);
+    return { triangleOrder: words.slice(order >> 2, (order >> 2) + triangles),
+        clusters: Array.from({ length: count }, (_, i) => ({
+            firstTriangle: words[(clusters >> 2) + 2 * i], triangleCount: words[(clusters >> 2) + 2 * i + 1] })) };
+}
+/** Triangles to draw, four words for each cluster: object, cluster, the low and the high half of the bits. */
+export const trianglesIn = (words) => Array.from({ length: words.length / 4 }, (_, i) => {
+    const [object, cluster, low, high] = words.subarray(4 * i, 4 * i + 4);
+    return { object, cluster, triangles: BigInt(low) + (BigInt(high) << 32n) };
+});
 
 /** The arrays of a mesh, checked. */
 export function meshArrays(positions, indices) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 import { failure } from './error.js';
 import { Owned, checkArray, checkGroups, create, numbersOf } from './memory.js';
-import { IDENTITY, meshArrays, writeTransform } from './records.js';
+import { IDENTITY, clustersAt, meshArrays, vectorAt, writeTransform } from './records.js';
 
 const points = (array, what) => {
     checkArray(array, [Float32Array], what);
@@ -60,6 +60,20 @@ export class Shape extends Owned {
         });
         super(memory, 'Shape', handle, '_crofton_shape_destroy');
     }
+    /** The box along the axes that contains it in its frame, `{ min, max }`; infinite for half-spaces. */
+    get bounds() {
+        const { memory } = this, at = memory.scratch(96);
+        memory.words[at >> 2] = 96;
+        memory.call('shape_get_info', this.handle, at);
+        return { min: vectorAt(memory, at + 24), max: vectorAt(memory, at + 48) };
+    }
+    /** `{ volume, center, inertia }` for density 1, in its frame; nine numbers of inertia about the center. Error: surfaces have none. */
+    get mass() {
+        const { memory } = this, at = memory.scratch(112);
+        memory.words[at >> 2] = 112;
+        memory.call('shape_get_mass', this.handle, at);
+        return { volume: memory.doubles[at + 8 >> 3], center: vectorAt(memory, at + 16), inertia: [...memory.doubles.subarray(at + 40 >> 3, at + 112 >> 3)] };
+    }
 }
 
 export function shapeOf(shape) {
@@ -71,6 +85,15 @@ export function shapeOf(shape) {
 export function writePlaced(memory, at, shape, transform = IDENTITY) {
     memory.words.set([shapeOf(shape).handle, writeTransform(memory, at + 8, transform)], at >> 2);
     return at;
+}
+
+/** Writes a motion, 72 bytes, and the options of its cast, 32 bytes. */
+export function writeCast({ words, doubles }, { velocity = [0, 0, 0], spin = [0, 0, 0], pivot = [0, 0, 0], duration = 1, tolerance = 0,
+    maxSteps = 0, ignoreInitialOverlaps = false } = {}, motion, options) {
+    doubles.set([...numbersOf(velocity, 3, 'velocity'), ...numbersOf(spin, 3, 'spin'), ...numbersOf(pivot, 3, 'pivot')], motion >> 3);
+    words[options >> 2] = 32;
+    doubles.set([duration, tolerance], (options >> 3) + 1);
+    words.set([maxSteps, ignoreInitialOverlaps ? 1 : 0], options + 24 >> 2);
 }
 
 /** A mesh cut into clusters; it never changes. Made of `positions` and `indices`, or of the bytes that `bytes` gave. */
@@ -88,6 +111,12 @@ export class ClusteredMesh extends Owned {
                 return create(memory, 'clustered_mesh', at, maxTriangles);
             });
         super(memory, 'ClusteredMesh', handle, '_crofton_clustered_mesh_destroy');
+    }
+    /** A copy: `{ clusters: [{ firstTriangle, triangleCount }], triangleOrder }`, as `World.clustersOf`. */
+    get clusters() {
+        const at = this.memory.scratch(16);
+        this.memory.call('clustered_mesh_get', this.handle, at);
+        return clustersAt(this.memory, at);
     }
     /** A copy, to store: `new ClusteredMesh(bytes)` makes an equal one without cutting again. */
     get bytes() {

@@ -3,7 +3,7 @@
 import { failure } from './error.js';
 import { Owned, checkArray, create, numbersOf } from './memory.js';
 import { DEPTH, writeCamera } from './geometry.js';
-import { ALL, layersOf } from './records.js';
+import { ALL, layersOf, trianglesIn } from './records.js';
 
 /**
  * The answer of a view of a world, a tree or a list of boxes. Its arrays are valid until its next view or growth of memory. After a view of
@@ -58,11 +58,7 @@ export class ViewResult extends Owned {
     get triangleWords() { return this.triangleWordsOf(0); }
     /** The same as `{ object, cluster, triangles }`; bit k of the BigInt stands for triangle k of the cluster. */
     trianglesOf(view) {
-        const words = this.triangleWordsOf(view);
-        return Array.from({ length: words.length / 4 }, (_, i) => {
-            const [object, cluster, low, high] = words.subarray(4 * i, 4 * i + 4);
-            return { object, cluster, triangles: BigInt(low) + (BigInt(high) << 32n) };
-        });
+        return trianglesIn(this.triangleWordsOf(view));
     }
     get triangles() { return this.trianglesOf(0); }
     /**
@@ -121,13 +117,21 @@ export function withRequests(memory, requests, ask) {
     });
 }
 
+function depthOf(name) {
+    if (!(name in DEPTH)) throw failure(1, `depth is one of ${Object.keys(DEPTH).join(', ')}`);
+    return DEPTH[name];
+}
+/** Writes 32 bytes. */
+export function writePicture(memory, at, { width = 1280, height = 720, depth = 'reversed', samples = 1 } = {}) {
+    memory.fill('default_picture_view', at);
+    memory.words.set([width, height, depthOf(depth), samples], (at >> 2) + 1);
+    return at;
+}
+
 // From `at` on: the camera, 128 limits, 256 the matrix, 432 occlusion, 464 the picture, 496 the receivers.
 function writeRequest(memory, { camera, matrix, depth = 'minusOneToOne', origin, volume, layers = ALL, occlusion, picture, receivers, limits, treeOrder,
     conservative }, request, at, arrays, places) {
-    const { words, doubles, floats } = memory, first = request >> 2, word = (name) => {
-        if (!(name in DEPTH)) throw failure(1, `depth is one of ${Object.keys(DEPTH).join(', ')}`);
-        return DEPTH[name];
-    };
+    const { words, doubles, floats } = memory, first = request >> 2;
     const structs = { request, limits: at + 128 };
     memory.fill('default_view_request', request);
     if (camera) words[first + 1] = writeCamera(memory, camera, at);
@@ -136,7 +140,7 @@ function writeRequest(memory, { camera, matrix, depth = 'minusOneToOne', origin,
         const place = at + 256;
         memory.fill('default_view_matrix', place);
         words[(place >> 2) + 1] = place + 48;
-        words[(place >> 2) + 4] = word(depth);
+        words[(place >> 2) + 4] = depthOf(depth);
         if (origin) doubles.set(numbersOf(origin, 3, 'origin'), (place >> 3) + 3);
         doubles.set(matrix, (place >> 3) + 6);
         words[first + 2] = place;
@@ -160,12 +164,7 @@ function writeRequest(memory, { camera, matrix, depth = 'minusOneToOne', origin,
         doubles[place + 9] = hysteresis;
         words[first + 6] = structs.limits;
     }
-    if (picture) {
-        const { width = 1280, height = 720, depth: range = 'reversed', samples = 1 } = picture, place = at + 464;
-        memory.fill('default_picture_view', place);
-        words.set([width, height, word(range), samples], (place >> 2) + 1);
-        words[first + 11] = place;
-    }
+    if (picture) words[first + 11] = writePicture(memory, at + 464, picture);
     if (receivers) {
         const { seen, radius = 1 } = receivers, place = at + 496;
         if (!(seen instanceof ViewResult)) throw failure(1, 'receivers: `seen` is a ViewResult');

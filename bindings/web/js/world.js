@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 import { failure } from './error.js';
 import { Owned, checkArray, checkGroups, create, numbersOf } from './memory.js';
-import { ALL, IDENTITY, giveHandle, halvesOf, handleAt, layersOf, meshArrays, refAt, userAt, vectorAt, writeBound, writeBox, writeMesh,
-    writeTransform } from './records.js';
-import { shapeOf, writePlaced } from './shape.js';
+import { ALL, IDENTITY, clustersAt, giveHandle, halvesOf, handleAt, layersOf, meshArrays, refAt, userAt, vectorAt, writeBound, writeBox, writeMesh,
+    writeRay, writeTransform } from './records.js';
+import { shapeOf, writeCast, writePlaced } from './shape.js';
 import { withRequests } from './views.js';
 
 const PHASES = ['began', 'stayed', 'ended'], INSIDE = ['nothing', 'first', 'second', 'partly'];
@@ -34,6 +34,14 @@ export class World extends Owned {
             return handleAt(memory, at + 48, 'mesh');
         });
     }
+    /** Gives all objects of a mesh other triangles; parameters as in `addMesh`. Its occluders are removed. */
+    replaceMesh(mesh, positions, indices, how) {
+        const { memory, handle } = this;
+        memory.lend([...meshArrays(positions, indices), new Uint8Array(56)], (places, corners, at) => {
+            writeMesh(memory, at, places, corners, positions, indices, how);
+            memory.call('world_replace_mesh', handle, giveHandle(memory, mesh, 'mesh', at + 48), at);
+        });
+    }
     /** Moves the vertices of a mesh that deforms: as many as before. */
     setVertices(mesh, positions) {
         const { memory, handle } = this;
@@ -51,10 +59,7 @@ export class World extends Owned {
         const { memory } = this, at = giveHandle(memory, mesh, 'mesh', memory.scratch(32));
         memory.words[at + 8 >> 2] = 24;
         memory.call('world_get_mesh', this.handle, at, at + 8);
-        const { words } = memory, [clusters, count, order, triangles] = words.subarray(at + 16 >> 2, at + 32 >> 2);
-        return { triangleOrder: words.slice(order >> 2, (order >> 2) + triangles),
-            clusters: Array.from({ length: count }, (_, i) => ({
-                firstTriangle: words[(clusters >> 2) + 2 * i], triangleCount: words[(clusters >> 2) + 2 * i + 1] })) };
+        return clustersAt(memory, at + 16);
     }
     /** Finds boxes inside `mesh`, if it is closed, that hide what is behind them. Objects hide nothing before this call. */
     findOccluders(mesh) {
@@ -249,10 +254,6 @@ export class World extends Owned {
         });
     }
 
-    #writeRay(at, origin, direction, maxT) {
-        this.memory.doubles.set([...numbersOf(origin, 3, 'origin'), ...numbersOf(direction, 3, 'direction'), maxT], at >> 3);
-        return at;
-    }
     #hitAt(at) {
         const { memory } = this, { doubles, words } = memory, first = at >> 2;
         return { ...refAt(memory, at), t: doubles[at + 16 >> 3], point: vectorAt(memory, at + 24),
@@ -261,18 +262,43 @@ export class World extends Owned {
     }
     /** Returns the nearest hit of a ray, `{ object, user, t, point, triangle, child, normal, startedInside }`, or null. */
     raycast(origin, direction, maxT = Infinity, layers = ALL) {
-        const { memory } = this, at = this.#writeRay(memory.scratch(144), origin, direction, maxT);
+        const { memory } = this, at = writeRay(memory, memory.scratch(144), origin, direction, maxT);
         memory.call('world_raycast', this.handle, at, 1, layersOf(layers), at + 56);
         return memory.words[at + 56 >> 2] === ALL ? null : this.#hitAt(at + 56);
+    }
+    /**
+     * Many rays in a call: three numbers each, arrays of doubles. Returns `{ t, objects, triangles, normals }`: t is infinite for a ray that hits
+     * nothing, and its object, as a triangle where there is none, -1.
+     */
+    raycastMany(origins, directions, maxT = Infinity, layers = ALL) {
+        const { memory, handle } = this, count = checkArray(origins, [Float64Array], 'origins').length / 3;
+        checkArray(directions, [Float64Array], 'directions');
+        checkGroups(origins, 3, 'origins');
+        if (origins.length !== directions.length) throw failure(1, `there are ${origins.length} numbers of origins and ${directions.length} of directions`);
+        return memory.lend([new Float64Array(7 * count), new Float64Array(11 * count)], (rays, hits) => {
+            for (let i = 0, { doubles } = memory, at = rays >> 3; i < count; ++i, at += 7) {
+                for (let k = 0; k < 3; ++k) [doubles[at + k], doubles[at + 3 + k]] = [origins[3 * i + k], directions[3 * i + k]];
+                doubles[at + 6] = maxT;
+            }
+            memory.call('world_raycast', handle, rays, count, layersOf(layers), hits);
+            const answer = { t: new Float64Array(count).fill(Infinity), objects: new Int32Array(count).fill(-1),
+                triangles: new Int32Array(count).fill(-1), normals: new Float64Array(3 * count) };
+            for (let i = 0, { doubles, words } = memory, at = hits; i < count; ++i, at += 88) {
+                if (words[at >> 2] === ALL) continue;
+                [answer.t[i], answer.objects[i], answer.triangles[i]] = [doubles[at + 16 >> 3], words[at >> 2], words[at + 48 >> 2]];
+                answer.normals.set(doubles.subarray(at + 56 >> 3, at + 80 >> 3), 3 * i);
+            }
+            return answer;
+        });
     }
     /** Returns the nearest hit of each object that the ray hits, in order of t, then of index. */
     raycastAll(origin, direction, maxT = Infinity, layers = ALL) {
         return this.#find('hits', 88, (found, at) =>
-            this.memory.call('world_raycast_all', this.handle, this.#writeRay(at, origin, direction, maxT), layersOf(layers), found), (at) => this.#hitAt(at));
+            this.memory.call('world_raycast_all', this.handle, writeRay(this.memory, at, origin, direction, maxT), layersOf(layers), found), (at) => this.#hitAt(at));
     }
     /** Tells whether a ray hits anything; faster than `raycast`. */
     raycastAny(origin, direction, maxT = Infinity, layers = ALL) {
-        const { memory } = this, at = this.#writeRay(memory.scratch(64), origin, direction, maxT);
+        const { memory } = this, at = writeRay(memory, memory.scratch(64), origin, direction, maxT);
         memory.call('world_raycast_any', this.handle, at, layersOf(layers), at + 56);
         return memory.words[at + 56 >> 2] !== 0;
     }
@@ -314,13 +340,10 @@ export class World extends Owned {
      * Returns the first object that a shape meets which moves by `velocity` and turns by `spin` radians a unit of time about its `pivot`:
      * `{ object, user, time, normal, point, triangle, distance, unresolved }`, or null. The objects are at rest.
      */
-    cast({ shape, transform }, { velocity = [0, 0, 0], spin = [0, 0, 0], pivot = [0, 0, 0], duration = 1, tolerance = 0, maxSteps = 0,
-        ignoreInitialOverlaps = false }, layers = ALL) {
-        const { memory } = this, at = memory.scratch(304), motion = at + 104, options = at + 176, hit = at + 208, { words, doubles } = memory;
-        doubles.set([...numbersOf(velocity, 3, 'velocity'), ...numbersOf(spin, 3, 'spin'), ...numbersOf(pivot, 3, 'pivot')], motion >> 3);
-        [words[options >> 2], words[hit >> 2]] = [32, 96];
-        doubles.set([duration, tolerance], (options >> 3) + 1);
-        words.set([maxSteps, ignoreInitialOverlaps ? 1 : 0], options + 24 >> 2);
+    cast({ shape, transform }, how, layers = ALL) {
+        const { memory } = this, at = memory.scratch(304), motion = at + 104, options = at + 176, hit = at + 208;
+        writeCast(memory, how, motion, options);
+        memory.words[hit >> 2] = 96;
         memory.call('world_cast', this.handle, writePlaced(memory, at, shape, transform), motion, options, layersOf(layers), hit);
         if (memory.words[hit + 4 >> 2] === ALL) return null;
         return { object: handleAt(memory, hit + 4, 'object'), user: userAt(memory, hit + 16), time: memory.doubles[hit + 24 >> 3],
