@@ -83,7 +83,8 @@ def program_of(readme, language):
 
 def start_page(text):
     """The README, with the live page behind its first picture and the first programs of all languages."""
-    text = re.sub(r"^(!\[.*\]\(.*\))$", r"[\1](live/index.html)\n\n[Fly through a town in your browser](live/index.html){ .md-button .md-button--primary }", text, count=1, flags=re.M)
+    buttons = "[Fly through a town in your browser](live/index.html){ .md-button .md-button--primary } [Install](docs/install.md){ .md-button }"
+    text = re.sub(r"^(!\[.*\]\(.*\))$", lambda found: f"{buttons}\n\n[{found[1]}](live/index.html)", text, count=1, flags=re.M)
     tabs = "".join(f'=== "{name}"\n\n' + "".join(f"    {line}" for line in program_of(readme, language).splitlines(keepends=True)) + "\n"
                    for name, readme, language in LANGUAGES)
     return "---\nhide: [navigation]\n---\n\n" + text.replace(program_of("README.md", "cpp"), tabs)

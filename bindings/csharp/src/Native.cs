@@ -213,6 +213,22 @@ namespace Crofton {
         }
 
         [StructLayout(LayoutKind.Sequential)]
+        internal struct ShapeManifoldData {
+            public UIntPtr Size;
+            public Vector3 Normal;
+            public double Depth;
+            public uint PointCount;
+            [MarshalAs(UnmanagedType.ByValArray, SizeConst = 8)] public ShapePoint[] Points;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct ManifoldOptionsData {
+            public UIntPtr Size;
+            public double Margin;
+            public uint MaxPoints;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
         internal struct CastOptionsData {
             public UIntPtr Size;
             public double Duration, Tolerance;
@@ -435,6 +451,8 @@ namespace Crofton {
         [DllImport(Library)] internal static extern int crofton_shapes_meet(ref PlacedData a, ref PlacedData b, IntPtr cache, out int meet);
         [DllImport(Library)] internal static extern int crofton_shapes_distance(ref PlacedData a, ref PlacedData b, IntPtr cache, ref ShapeDistanceData distance);
         [DllImport(Library)] internal static extern int crofton_shapes_penetration(ref PlacedData a, ref PlacedData b, IntPtr cache, ref ShapePenetrationData penetration);
+        [DllImport(Library)] internal static extern int crofton_shapes_manifold(ref PlacedData a, ref PlacedData b, ref ManifoldOptionsData options, IntPtr cache, ref ShapeManifoldData manifold);
+        [DllImport(Library)] internal static extern int crofton_shape_closest_point(ref PlacedData shape, ref Vector3 point, ref ShapeDistanceData distance);
         [DllImport(Library)] internal static extern int crofton_shapes_cast(ref PlacedData a, ref Motion motionA, ref PlacedData b, ref Motion motionB, ref CastOptionsData options, ref ImpactData impact);
         [DllImport(Library)] internal static extern int crofton_shape_raycast(ref PlacedData shape, ref Ray ray, ref ShapeRayHitData hit);
 

@@ -211,6 +211,23 @@ namespace Crofton {
             Ask(this, other, (ref Native.PlacedData a, ref Native.PlacedData b) => Native.crofton_shapes_penetration(ref a, ref b, IntPtr.Zero, ref data));
             return data.Overlapping == 0 ? (Penetration?)null : new Penetration { Depth = data.Depth, Normal = data.Normal };
         }
+        /// <summary>Returns where the shapes touch: up to maxPoints points, 1 to 8; none if they are farther apart than a margin.</summary>
+        public ShapeContact Contacts(Placed other, double margin = 0, uint maxPoints = 4) {
+            var options = new Native.ManifoldOptionsData { Size = Native.SizeOf<Native.ManifoldOptionsData>(), Margin = margin, MaxPoints = maxPoints };
+            var data = new Native.ShapeManifoldData { Size = Native.SizeOf<Native.ShapeManifoldData>() };
+            Ask(this, other, (ref Native.PlacedData a, ref Native.PlacedData b) => Native.crofton_shapes_manifold(ref a, ref b, ref options, IntPtr.Zero, ref data));
+            return new ShapeContact { Normal = data.Normal, Depth = data.Depth, Points = data.Points.Take((int)data.PointCount).ToArray() };
+        }
+        /// <summary>Returns the distance of a point, 0 inside a solid, and the nearest point of the shape.</summary>
+        public double ClosestPoint(Vector3 point, out Vector3 onShape) {
+            var data = new Native.ShapeDistanceData { Size = Native.SizeOf<Native.ShapeDistanceData>() };
+            using (var memory = new Copies()) {
+                Native.PlacedData placed = memory.Of(this);
+                Library.Check(Native.crofton_shape_closest_point(ref placed, ref point, ref data));
+            }
+            onShape = data.OnB; // a is the point
+            return data.Distance;
+        }
         /// <summary>Returns when this shape, moving, first touches another; null if it does not in that time.</summary>
         public Impact? Cast(Motion motion, Placed other, Motion otherMotion = default(Motion), CastOptions options = null) {
             var given = CastOptions.Data(options);
@@ -232,6 +249,24 @@ namespace Crofton {
             if (double.IsInfinity(data.T)) return null;
             return new ShapeRayHit { T = data.T, Point = data.Point, Normal = data.Normal, Part = data.Part, StartedInside = data.StartedInside != 0 };
         }
+    }
+
+    /// <summary>A contact point of two shapes. Features and parts stay the same while the same features touch.</summary>
+    [StructLayout(LayoutKind.Sequential)]
+    public struct ShapePoint {
+        /// <summary>Midway between the surfaces, in the world.</summary>
+        public Vector3 Position;
+        /// <summary>Along the normal; negative: a gap.</summary>
+        public double Depth;
+        public Feature OnA, OnB;
+        public Part PartA, PartB;
+    }
+
+    /// <summary>Where two shapes touch: their deepest contact. Normal is a unit vector from the first to the second.</summary>
+    public sealed class ShapeContact {
+        public Vector3 Normal;
+        public double Depth;
+        public ShapePoint[] Points;
     }
 
     /// <summary>The first object that a moving shape meets.</summary>

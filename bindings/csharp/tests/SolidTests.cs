@@ -60,6 +60,33 @@ static class SolidTests {
             Expect.Near(-Math.Sqrt(0.5), down(1.5).Value.Normal.X);
         }
     }
+    [Test] static void ABoxOnAFloorHasFourContactPoints() {
+        using (var floor = Shape.HalfSpace(new Vector3(0, -1, 0), 0))
+        using (var cube = Shape.Box(new Float3(1, 2, 3))) {
+            Placed ground = floor.At(Here);
+            Func<double, Placed> at = y => cube.At(Transform.At(0, y, 0));
+            ShapeContact contact = ground.Contacts(at(1.75));
+            Expect.Equal(4, contact.Points.Length);
+            Expect.Near(0.25, contact.Depth);
+            Expect.Near(1, contact.Normal.Y);
+            foreach (ShapePoint point in contact.Points) {
+                Expect.Near(0.25, point.Depth);
+                Expect.Near(1, Math.Abs(point.Position.X), 1e-6);
+                Expect.Near(-0.125, point.Position.Y, 1e-6);
+                Expect.Near(3, Math.Abs(point.Position.Z), 1e-6);
+            }
+            Expect.Equal(1, ground.Contacts(at(1.75), 0, 1).Points.Length);
+            Expect.Equal(0, ground.Contacts(at(2.5), 0.25).Points.Length);
+            Expect.Near(-0.5, ground.Contacts(at(2.5), 1).Depth);
+            Expect.Fails(Status.InvalidArgument, () => ground.Contacts(at(2.5), -1));
+            Expect.Fails(Status.OutOfRange, () => ground.Contacts(at(2.5), 0, 9));
+            Vector3 nearest;
+            Expect.Near(Math.Sqrt(10), at(0).ClosestPoint(new Vector3(0, 5, 4), out nearest));
+            Expect.Near(2, nearest.Y);
+            Expect.Near(0, at(0).ClosestPoint(new Vector3(0, 1, 1), out nearest));
+            Expect.Fails(Status.NotFinite, () => at(0).ClosestPoint(new Vector3(0, double.NaN, 0), out nearest));
+        }
+    }
     [Test] static void AShapeThatMovesMeetsAnotherInTime() {
         using (var ball = Shape.Sphere(1))
         using (var cube = Shape.Box(One)) {

@@ -331,11 +331,33 @@ measure::Criterion criterion_of(const py::handle& given) {
                                           {"volume", measure::minimal_volume()}});
 }
 
-bool Watch::should_stop(double first, double second) {
+namespace {
+
+// True every 50 ms.
+bool is_time(std::int64_t& next) {
     const auto now = std::chrono::steady_clock::now().time_since_epoch();
     const std::int64_t milliseconds = std::chrono::duration_cast<std::chrono::milliseconds>(now).count();
-    if (milliseconds < next_) return false;
-    next_ = milliseconds + 50;
+    if (milliseconds < next) return false;
+    next = milliseconds + 50;
+    return true;
+}
+
+}  // namespace
+
+bool Interrupt::is_pending() {
+    if (!is_time(next_)) return false;
+    const py::gil_scoped_acquire lock;
+    if (PyOS_InterruptOccurred() == 0) return false;
+    PyErr_SetInterrupt();
+    return true;
+}
+
+void Interrupt::raise() {
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+}
+
+bool Watch::should_stop(double first, double second) {
+    if (!is_time(next_)) return false;
     const py::gil_scoped_acquire lock;
     try {
         if (PyErr_CheckSignals() != 0) throw py::error_already_set();

@@ -211,4 +211,16 @@ class Watch {
     std::int64_t next_ = 0;
 };
 
+// Looks now and then for Ctrl-C, without running its handler, which may use what the call has locked.
+class Interrupt {
+  public:
+    // True: stop, release locks, and call raise(). Costs next to nothing but every 50 ms.
+    [[nodiscard]] bool is_pending();
+    // With the interpreter's lock: runs the handler, and raises what it raises. If it raises nothing, go on.
+    static void raise();
+
+  private:
+    std::int64_t next_ = 0;
+};
+
 }  // namespace crofton::python

@@ -5,7 +5,9 @@
 
 #include <memory>
 #include <mutex>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -89,47 +91,56 @@ py::array_t<float> rows_of(const glm::mat4& matrix) {
 }
 
 // Copies, which keep the meshes alive.
-std::vector<DrawnMesh> drawn_meshes(const py::handle& given) {
-    constexpr const char* kExpected = "objects: a list of DepthObject is expected";
-    if (!py::isinstance<py::iterable>(given)) raise_type(kExpected);
-    std::vector<DrawnMesh> result;
+template <class T>
+std::vector<T> copies_of(const py::handle& given, const char* expected) {
+    if (!py::isinstance<py::iterable>(given)) raise_type(expected);
+    std::vector<T> result;
     for (const py::handle one : py::reinterpret_borrow<py::iterable>(given)) {
-        if (!py::isinstance<DrawnMesh>(one)) raise_type(kExpected);
-        result.push_back(one.cast<const DrawnMesh&>());
+        if (!py::isinstance<T>(one)) raise_type(expected);
+        result.push_back(one.cast<const T&>());
     }
     return result;
+}
+
+// Where an object of a camera's picture lies in a shadow map.
+struct Receiver {
+    std::shared_ptr<const ClusteredMesh> mesh;
+    glm::mat4 to_map{1.0f};
+    bool solid = false;
+};
+
+Receiver receiver(const py::object& mesh, const py::handle& to_map, bool solid) {
+    if (!mesh.is_none() && !py::isinstance<ClusteredMesh>(mesh))
+        raise_type("mesh: a ClusteredMesh, or None, is expected");
+    return {mesh.is_none() ? nullptr : mesh.cast<std::shared_ptr<ClusteredMesh>>(),
+            glm::mat4(projection_of(to_map, "to_map")), solid};
 }
 
 // A culler, the size of its last picture, and a lock: calls run without the interpreter's.
 class Culler {
   public:
     py::tuple find_visible(const py::handle& given, const py::handle& width, const py::handle& height,
-                           const std::string& depth) {
-        const std::vector<DrawnMesh> meshes = drawn_meshes(given);
-        const depth::PictureView view{number_of<std::uint32_t>(width, "width"),
-                                      number_of<std::uint32_t>(height, "height"), depth_range(depth)};
-        std::vector<depth::DepthObject> objects;
-        for (const DrawnMesh& mesh : meshes) objects.push_back(mesh.object());
-        std::vector<std::uint32_t> object, cluster;
-        std::vector<std::uint64_t> triangles;
-        auto done = unlocked([&]() -> Result<void> {
+                           const std::string& depth, std::uint32_t samples) {
+        const auto threads = executor();
+        return find(given, width, height, depth, samples, [&](const auto& objects, const auto& view) {
             const std::lock_guard lock(mutex_);
-            const auto found = culler_.find_visible(objects, view);
-            if (!found) return fail(found.error().code, found.error().item, found.error().message);
-            width_ = view.width;
-            height_ = view.height;
-            for (const depth::VisibleCluster& c : *found) {
-                object.push_back(c.object);
-                cluster.push_back(c.cluster);
-                triangles.push_back(c.triangles);
-            }
-            return {};
+            return keep(culler_.find_visible(objects, view, *threads), view);
         });
-        if (!done) raise(with_arguments(done.error(), "width, height: "));
-        return py::make_tuple(array_of<std::uint32_t>(object), array_of<std::uint32_t>(cluster),
-                              array_of<std::uint64_t>(triangles));
     }
 
+    py::tuple find_casters(const py::handle& given, const py::handle& width, const py::handle& height, Culler& seen,
+                           const py::handle& given_receivers, float radius, const std::string& depth) {
+        const auto held = copies_of<Receiver>(given_receivers, "receivers: a list of DepthReceiver is expected");
+        std::vector<depth::DepthReceiver> receivers;
+        for (const Receiver& one : held) receivers.push_back({one.mesh.get(), one.to_map, one.solid});
+        if (&seen == this)
+            raise({ErrorCode::invalid_argument, kNoItem, "seen: another DepthCuller, that of the camera, is expected"});
+        const auto threads = executor();
+        return find(given, width, height, depth, 1, [&](const auto& objects, const auto& view) {
+            const std::scoped_lock lock(mutex_, seen.mutex_);
+            return keep(culler_.find_casters(objects, view, {&seen.culler_, receivers, radius}, *threads), view);
+        });
+    }
     py::dict statistics() {
         const depth::DepthStatistics s = unlocked([&] {
             const std::lock_guard lock(mutex_);
@@ -159,6 +170,39 @@ class Culler {
     }
 
   private:
+    // What a call listed, copied while it has the lock.
+    struct Listed {
+        std::vector<std::uint32_t> object, cluster;
+        std::vector<std::uint64_t> triangles;
+    };
+
+    Result<Listed> keep(const Result<std::span<const depth::VisibleCluster>>& found, const depth::PictureView& view) {
+        if (!found) return fail(found.error().code, found.error().item, found.error().message);
+        width_ = view.width;
+        height_ = view.height;
+        Listed result;
+        for (const depth::VisibleCluster& c : *found) {
+            result.object.push_back(c.object);
+            result.cluster.push_back(c.cluster);
+            result.triangles.push_back(c.triangles);
+        }
+        return result;
+    }
+
+    template <class F>
+    static py::tuple find(const py::handle& given, const py::handle& width, const py::handle& height,
+                          const std::string& depth, std::uint32_t samples, F&& f) {
+        const auto meshes = copies_of<DrawnMesh>(given, "objects: a list of DepthObject is expected");
+        depth::PictureView view{number_of<std::uint32_t>(width, "width"), number_of<std::uint32_t>(height, "height"),
+                                depth_range(depth)};
+        view.samples = samples;
+        std::vector<depth::DepthObject> objects;
+        for (const DrawnMesh& mesh : meshes) objects.push_back(mesh.object());
+        const Listed listed = value_of(unlocked([&] { return f(objects, view); }));
+        return py::make_tuple(array_of<std::uint32_t>(listed.object), array_of<std::uint32_t>(listed.cluster),
+                              array_of<std::uint64_t>(listed.triangles));
+    }
+
     DepthCuller culler_;
     std::uint32_t width_ = 0, height_ = 0;
     std::mutex mutex_;
@@ -181,6 +225,21 @@ void bind_depth(py::module_& module) {
             "clusters", &clusters_of,
             "an array of records: `first_triangle` and `triangle_count` in that order, and a box around "
             "them, `center` ± each of the three `half_edges`")
+        .def(
+            "to_bytes",
+            [](const ClusteredMesh& mesh) {
+                const auto bytes = mesh.serialise();
+                return py::bytes(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+            },
+            "Returns bytes to store: from_bytes makes an equal object without cutting again.")
+        .def_static(
+            "from_bytes",
+            [](const py::bytes& given) {
+                const std::string_view text(given);
+                return std::make_shared<ClusteredMesh>(
+                    value_of(ClusteredMesh::deserialise(std::as_bytes(std::span(text)))));
+            },
+            py::arg("bytes"), "Error: the bytes are cut off, or numbers are out of range.")
         .def("__len__", [](const ClusteredMesh& mesh) { return mesh.clusters().size(); })
         .def("__repr__", [](const ClusteredMesh& mesh) {
             return format("ClusteredMesh(%zu clusters, %zu triangles)", mesh.clusters().size(), mesh.triangle_count());
@@ -207,6 +266,17 @@ void bind_depth(py::module_& module) {
                           m.hides ? "" : ", hides nothing");
         });
 
+    py::class_<Receiver>(module, "DepthReceiver", "Where an object of a camera's picture lies in a shadow map.")
+        .def(
+            py::init(&receiver), py::arg("mesh"), py::arg("to_map"), py::kw_only(), py::arg("solid") = false,
+            "`mesh` is that of the picture; None does where nothing of it was listed. `to_map` transforms columns "
+            "(x, y, z, 1) from the mesh's frame to the map's clip space. `solid`: anything within the mesh's bound may "
+            "be seen, and not its triangles only.")
+        .def("__repr__", [](const Receiver& r) {
+            return format("DepthReceiver(%zu triangles%s)", r.mesh ? r.mesh->triangle_count() : 0,
+                          r.solid ? ", solid" : "");
+        });
+
     py::class_<Culler>(module, "DepthCuller",
                        "Finds the triangles that a picture needs: walks front to back and tests clusters against the "
                        "depth of the triangles found before. Keeps its memory between calls.")
@@ -217,10 +287,18 @@ void bind_depth(py::module_& module) {
                         std::string(py::str(culler.statistics()["triangles_listed"])) + ")";
              })
         .def("find_visible", &Culler::find_visible, py::arg("objects"), py::arg("width"), py::arg("height"),
-             py::kw_only(), py::arg("depth") = "reversed_zero_to_one",
+             py::kw_only(), py::arg("depth") = "reversed_zero_to_one", py::arg("samples") = 1,
              "Returns (object, cluster, triangles): arrays with one item per listed cluster, by object, then by "
-             "cluster. Bit k of `triangles` stands for triangle first_triangle + k of the cluster. The picture has one "
-             "sample per pixel and 32-bit float depth.")
+             "cluster. Bit k of `triangles` stands for triangle first_triangle + k of the cluster. The picture has "
+             "32-bit "
+             "float depth, and 1, 2, 4 or 8 samples in each pixel.")
+        .def("find_casters", &Culler::find_casters, py::arg("objects"), py::arg("width"), py::arg("height"),
+             py::arg("seen"), py::arg("receivers"), py::kw_only(), py::arg("radius") = 1.0f,
+             py::arg("depth") = "reversed_zero_to_one",
+             "Lists the triangles of `objects` to draw into a light's shadow map: those without which a shadow on what "
+             "a camera sees would change. `to_clip` of each leads to the map's clip space. `seen` is the DepthCuller "
+             "whose last find_visible was of the camera's picture, `receivers` has one DepthReceiver for each object "
+             "of that call, and a lookup reads texels up to `radius` from its point along each axis.")
         .def_property_readonly("statistics", &Culler::statistics,
                                "what the last call tested, drew and listed, as a dict")
         .def_property_readonly("nearness", &Culler::nearness,

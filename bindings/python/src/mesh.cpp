@@ -48,13 +48,29 @@ RigidTransform pose_of(const py::object& given, const char* name) {
 }
 
 namespace {
-
-using SharedMesh = std::shared_ptr<PyMesh>;
-
 struct ContactRecord {
     std::uint32_t first, second;
     double begin[3], end[3], normal[3];
 };
+}  // namespace
+
+py::array mesh_contacts_of(std::span<const mesh::MeshContact> contacts) {
+    py::array_t<ContactRecord> result(static_cast<py::ssize_t>(contacts.size()));
+    ContactRecord* out = result.mutable_data();
+    for (const mesh::MeshContact& c : contacts) {
+        const glm::dvec3 &begin = c.segment.begin, &end = c.segment.end;
+        *out++ = {c.triangles.first,
+                  c.triangles.second,
+                  {begin.x, begin.y, begin.z},
+                  {end.x, end.y, end.z},
+                  {c.normal.x, c.normal.y, c.normal.z}};
+    }
+    return result;
+}
+
+namespace {
+
+using SharedMesh = std::shared_ptr<PyMesh>;
 
 struct MeshHitRecord {
     double t;
@@ -131,17 +147,7 @@ py::array contacts(const PyMesh& a, const PyMesh& b, const py::object& given_pos
         mesh::contacts(x, y, pose, all);
         return all;
     });
-    py::array_t<ContactRecord> result(static_cast<py::ssize_t>(found.size()));
-    ContactRecord* out = result.mutable_data();
-    for (const mesh::MeshContact& c : found) {
-        const glm::dvec3 &begin = c.segment.begin, &end = c.segment.end;
-        *out++ = {c.triangles.first,
-                  c.triangles.second,
-                  {begin.x, begin.y, begin.z},
-                  {end.x, end.y, end.z},
-                  {c.normal.x, c.normal.y, c.normal.z}};
-    }
-    return result;
+    return mesh_contacts_of(found);
 }
 
 py::array contains(const PyMesh& mesh, const py::object& given) {
@@ -193,10 +199,15 @@ py::array raycast_many(const PyMesh& mesh, const py::handle& origins, const py::
         value_of(validate(rays.back(), i));
     }
     std::vector<std::optional<mesh::TriangleHit>> hits(rays.size());
-    with_tree(mesh, [&](const mesh::MeshTree& tree) {
-        mesh::raycast(rays, tree, hits);
-        return true;
-    });
+    constexpr std::size_t kAtOnce = 4096;  // between two looks for Ctrl-C
+    for (std::size_t done = 0; done < rays.size(); done += kAtOnce) {
+        const std::size_t count = std::min(kAtOnce, rays.size() - done);
+        with_tree(mesh, [&](const mesh::MeshTree& tree) {
+            mesh::raycast(std::span(rays).subspan(done, count), tree, std::span(hits).subspan(done, count));
+            return true;
+        });
+        Interrupt::raise();
+    }
     py::array_t<MeshHitRecord> result(static_cast<py::ssize_t>(rays.size()));
     MeshHitRecord* const out = result.mutable_data();
     for (std::size_t i = 0; i < rays.size(); ++i) {

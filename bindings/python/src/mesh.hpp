@@ -3,10 +3,12 @@
 #pragma once
 #include <crofton/convex/query.hpp>
 #include <crofton/geometry/mesh.hpp>
+#include <crofton/mesh/mesh_query.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -48,6 +50,9 @@ using SharedShape = std::shared_ptr<PyShape>;
 // A rotation and a translation as a matrix of shape (4, 4) or (3, 4); None: the identity. Raises Error for one that
 // scales, shears or mirrors.
 [[nodiscard]] RigidTransform pose_of(const py::object& given, const char* name);
+
+// An array of records: first, second, begin, end, normal.
+[[nodiscard]] py::array mesh_contacts_of(std::span<const mesh::MeshContact> contacts);
 
 // The first hit of a ray at a mesh or a shape.
 struct SurfaceHit {

@@ -3,6 +3,8 @@
 
 #include <pybind11/stl.h>
 
+#include <cmath>
+
 #include "module.hpp"
 
 namespace crofton::python {
@@ -45,22 +47,29 @@ void bind_world(py::module_& module) {
         module, "World",
         "A set of objects. Add and move them, call update() once a frame, then ask what a camera sees, what a ray hits "
         "and what touches what. Changes take effect at the next update(). May be used from several threads.");
-    type.def(py::init([](bool pairs, bool contacts, bool containment, std::size_t max_pairs,
-                         std::uint32_t updates_to_rest, const std::string& tree) {
-                 return std::make_unique<PyWorld>(WorldOptions{.pairs = pairs,
-                                                               .contacts = contacts,
-                                                               .containment = containment,
-                                                               .max_pairs = max_pairs,
-                                                               .updates_to_rest = updates_to_rest,
-                                                               .tree = orientation_of(tree)});
-             }),
-             py::kw_only(), py::arg("pairs") = true, py::arg("contacts") = true, py::arg("containment") = true,
-             py::arg("max_pairs") = WorldOptions{}.max_pairs, py::arg("updates_to_rest") = 16,
-             py::arg("tree") = "aligned");
+    type.def(
+        py::init([](bool pairs, bool contacts, bool containment, double contact_margin, bool mesh_depth,
+                    std::size_t max_pairs, std::uint32_t updates_to_rest, const std::string& tree) {
+            if (!(contact_margin >= 0.0 && std::isfinite(contact_margin)))
+                raise({ErrorCode::out_of_range, kNoItem, "contact_margin: a finite number from 0 on is expected"});
+            return std::make_unique<PyWorld>(WorldOptions{.pairs = pairs,
+                                                          .contacts = contacts,
+                                                          .containment = containment,
+                                                          .contact_margin = contact_margin,
+                                                          .mesh_depth = mesh_depth,
+                                                          .max_pairs = max_pairs,
+                                                          .updates_to_rest = updates_to_rest,
+                                                          .tree = orientation_of(tree)});
+        }),
+        py::kw_only(), py::arg("pairs") = true, py::arg("contacts") = true, py::arg("containment") = true,
+        py::arg("contact_margin") = 0.0, py::arg("mesh_depth") = false, py::arg("max_pairs") = WorldOptions{}.max_pairs,
+        py::arg("updates_to_rest") = 16, py::arg("tree") = "aligned",
+        "`contact_margin`: gaps up to this between shapes are contacts. `mesh_depth`: contacts between meshes have "
+        "a depth, which takes longer than finding them.");
     type.def("__repr__", [](const PyWorld& world) {
         return format("World(%zu objects)", world.ask([](const World& w) { return w.object_count(); }));
     });
-    bind_world_changes(type);
+    bind_world_changes(module, type);
     bind_world_views(module, type);
     bind_world_queries(module, type);
     bind_world_contacts(module, type);

@@ -56,7 +56,7 @@ class PyWorld {
 };
 
 // Each adds to the class what it is named after, and to the module the types of its answers.
-void bind_world_changes(py::class_<PyWorld>& type);
+void bind_world_changes(py::module_& module, py::class_<PyWorld>& type);
 void bind_world_views(py::module_& module, py::class_<PyWorld>& type);
 void bind_world_queries(py::module_& module, py::class_<PyWorld>& type);
 void bind_world_regions(py::module_& module, py::class_<PyWorld>& type);

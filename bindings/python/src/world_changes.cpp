@@ -59,6 +59,23 @@ auto with_mesh(const py::handle& positions, const py::object& indices, bool tria
     return f(description);
 }
 
+occlude::FoundOccluder surface_occluder(occlude::OccluderKind kind, const py::handle& given,
+                                        const py::object& indices) {
+    const PyMesh* const mesh = as<PyMesh>(given);
+    occlude::FoundOccluder result;
+    result.kind = kind;
+    if (mesh != nullptr) {
+        result.surface = mesh->triangles();
+        return result;
+    }
+    const Points<3> points(given, "positions");
+    points.visit([&](auto span) { result.surface.positions.assign(span.begin(), span.end()); });
+    if (indices.is_none()) return result;
+    const auto corners = integers<std::uint32_t>(indices, "indices");
+    result.surface.indices.assign(span_of(corners).begin(), span_of(corners).end());
+    return result;
+}
+
 template <class H>
 H handle_or_null(const py::object& given, const char* name) {
     if (given.is_none()) return {};
@@ -181,7 +198,36 @@ void set_boxes(PyWorld& world, const py::handle& given, const py::handle& given_
 
 }  // namespace
 
-void bind_world_changes(py::class_<PyWorld>& type) {
+void bind_world_changes(py::module_& module, py::class_<PyWorld>& type) {
+    using occlude::FoundOccluder;
+    using occlude::OccluderKind;
+    py::class_<FoundOccluder>(module, "Occluder",
+                              "Geometry by which a mesh's objects hide others, in the mesh's frame: opaque, and within "
+                              "the drawn mesh.")
+        .def_static(
+            "box", [](const Obb& box) { return FoundOccluder{.kind = OccluderKind::box, .box = box}; }, py::arg("box"),
+            "A box inside a closed piece of the mesh.")
+        .def_static(
+            "walled", [](const Obb& box) { return FoundOccluder{.kind = OccluderKind::walled, .box = box}; },
+            py::arg("box"), "A box behind walls of the mesh; it may be open on some sides.")
+        .def_static(
+            "convex",
+            [](const py::handle& points) { return surface_occluder(OccluderKind::convex, points, py::none()); },
+            py::arg("points"), "The convex hull of points (n, 3), or of a Mesh's.")
+        .def_static(
+            "patch",
+            [](const py::handle& positions, const py::object& indices, bool one_sided) {
+                FoundOccluder result = surface_occluder(OccluderKind::patch, positions, indices);
+                result.sides = one_sided ? occlude::Sides::front : occlude::Sides::both;
+                return result;
+            },
+            py::arg("positions"), py::arg("indices") = py::none(), py::kw_only(), py::arg("one_sided") = false,
+            "Any triangles: a Mesh, or points (n, 3) and indices. `one_sided`: hides only from the side where they are "
+            "counter-clockwise.")
+        .def("__repr__", [](const FoundOccluder& o) {
+            constexpr const char* kKinds[] = {"box", "walled", "convex", "patch"};
+            return format("Occluder(%s)", kKinds[static_cast<std::size_t>(o.kind)]);
+        });
     type.def(
             "add_mesh",
             [](PyWorld& world, const py::handle& positions, const py::object& indices, bool triangles, bool occluders,
@@ -211,6 +257,15 @@ void bind_world_changes(py::class_<PyWorld>& type) {
             py::arg("triangles") = true, py::arg("occluders") = false, py::arg("clusters") = false,
             py::arg("one_sided") = false, py::arg("precut") = nullptr,
             "Replaces a mesh in all objects that have it; the rest as in add_mesh.")
+        .def(
+            "set_occluders",
+            [](PyWorld& world, MeshHandle mesh, const std::vector<FoundOccluder>& occluders) {
+                value_of(world.change([&](World& w) { return w.set_occluders(mesh, occluders); }));
+            },
+            py::arg("mesh"), py::arg("occluders"),
+            "Gives a mesh occluders of yours, a list of Occluder, in place of those that add_mesh finds. None: it "
+            "hides "
+            "nothing. Replacing the mesh or its vertices removes them.")
         .def(
             "set_vertices",
             [](PyWorld& world, MeshHandle mesh, const py::handle& positions) {

@@ -11,13 +11,22 @@ namespace {
 struct ContactCopy {
     ObjectRef first, second;
     ContactPhase phase;
+    mesh::Containment inside;
     glm::dvec3 normal;
     double depth;
     std::vector<collide::ContactPoint> points;
+    std::vector<mesh::MeshContact> triangles;
 };
 
 ContactCopy copy_of(const Contact& c) {
-    ContactCopy result{c.first, c.second, c.phase, c.normal, c.depth, {c.points.begin(), c.points.end()}};
+    ContactCopy result{c.first,
+                       c.second,
+                       c.phase,
+                       c.inside,
+                       c.normal,
+                       c.depth,
+                       {c.points.begin(), c.points.end()},
+                       {c.triangles.begin(), c.triangles.end()}};
     for (const convex::TrackedPoint& point : c.shape_points)
         result.points.push_back({point.contact.position, point.contact.depth});
     return result;
@@ -33,6 +42,19 @@ std::vector<ContactCopy> contacts_of(const PyWorld& world) {
 
 const char* phase_name(ContactPhase phase) {
     return phase == ContactPhase::began ? "began" : phase == ContactPhase::stayed ? "stayed" : "ended";
+}
+
+const char* inside_name(mesh::Containment inside) {
+    switch (inside) {
+        case mesh::Containment::a_inside_b:
+            return "first";
+        case mesh::Containment::b_inside_a:
+            return "second";
+        case mesh::Containment::partly:
+            return "partly";
+        default:
+            return "nothing";
+    }
 }
 
 py::array pairs_of(const PyWorld& world) {
@@ -58,6 +80,12 @@ void bind_world_contacts(py::module_& module, py::class_<PyWorld>& type) {
         .def_property_readonly(
             "normal", [](const ContactCopy& c) { return tuple_of(c.normal); }, "unit, from the first to the second")
         .def_readonly("depth", &ContactCopy::depth)
+        .def_property_readonly(
+            "inside", [](const ContactCopy& c) { return inside_name(c.inside); },
+            "the object that is inside the other: 'nothing', 'first', 'second', or 'partly' for some pieces of one")
+        .def_property_readonly(
+            "triangles", [](const ContactCopy& c) { return mesh_contacts_of(c.triangles); },
+            "of two meshes, or a mesh and a box: the pairs of triangles that overlap, as Mesh.contacts, in the world")
         .def_property_readonly(
             "depths",
             [](const ContactCopy& c) {

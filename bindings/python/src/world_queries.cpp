@@ -30,8 +30,11 @@ py::array raycast_many(const PyWorld& python_world, const py::handle& origins, c
     };
     py::array_t<HitRecord> result(static_cast<py::ssize_t>(along.size()));
     HitRecord* out = result.mutable_data();
-    value_of(python_world.ask([&](const World& world) -> Result<void> {
-        for (std::size_t i = 0; i < along.size(); ++i) {
+    std::size_t i = 0;
+    Interrupt interrupt;
+    const auto some = [&](const World& world) -> Result<void> {
+        for (; i < along.size(); ++i) {
+            if (i % 256 == 255 && interrupt.is_pending()) return {};
             const Ray ray{at(from, i), at(along, i), max_t};
             if (auto valid = validate(ray, i); !valid) return valid;
             const auto hit = world.raycast(ray, layers);
@@ -49,7 +52,8 @@ py::array raycast_many(const PyWorld& python_world, const py::handle& origins, c
                       hit->user};
         }
         return {};
-    }));
+    };
+    for (; i < along.size(); Interrupt::raise()) value_of(python_world.ask(some));
     return result;
 }
 

@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: MIT
 """What a World says of rays, shapes, numbers and indices that are none."""
+import signal
+import threading
+import time
+
 import numpy as np
 import pytest
 
@@ -100,3 +104,62 @@ def test_errors_name_what_python_has(world, cube):
     with pytest.raises(crofton.Error) as error:
         crofton.IntrinsicVolumes.of_hull([(float("nan"), 0, 0)])
     assert str(error.value).startswith("hull: point 0")
+
+
+def interrupted(call):
+    """Presses Ctrl-C 0.2 s after the start of a call, and returns how long it took to stop."""
+    press = threading.Timer(0.2, signal.pthread_kill, [threading.main_thread().ident, signal.SIGINT])
+    start = time.monotonic()
+    press.start()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            call()
+        return time.monotonic() - start
+    finally:
+        press.join()
+
+
+def many_rays(random, count):
+    return random.uniform(-1, 1, (count, 3)), random.uniform(-1, 1, (count, 3)) + (0, 0, 2)
+
+
+def test_ctrl_c_ends_many_rays_and_loses_nothing(world, cube, random):
+    world.add_boxes(crofton.boxes(random.uniform(-50, 50, (20_000, 3)), 0.5))
+    world.update()
+    origins, directions = many_rays(random, 4_000_000)
+    whole = world.raycast_many(origins[:1000], directions[:1000])
+    assert interrupted(lambda: world.raycast_many(origins, directions)) < 2
+    assert (world.raycast_many(origins[:1000], directions[:1000]) == whole).all()
+    mesh = crofton.Mesh(*cube)
+    assert interrupted(lambda: [mesh.raycast_many(origins, directions) for _ in range(100)]) < 10
+    assert mesh.raycast_many(origins[:9], directions[:9])["hit"].all()
+
+
+def test_a_handler_of_ctrl_c_may_use_the_world_that_is_asked(world, random):
+    world.add_boxes(crofton.boxes(random.uniform(-50, 50, (20_000, 3)), 0.5))
+    world.update()
+    origins, directions = many_rays(random, 1_000_000)
+    called = []
+    signal.signal(signal.SIGINT, lambda *_: called.append(world.update()))
+    try:
+        threading.Timer(0.1, signal.pthread_kill, [threading.main_thread().ident, signal.SIGINT]).start()
+        found = world.raycast_many(origins, directions)
+    finally:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+    assert called == [None]
+    assert (found[-1000:] == world.raycast_many(origins[-1000:], directions[-1000:])).all()
+
+
+def test_ctrl_c_during_a_change_leaves_all_or_nothing(world, random):
+    boxes = crofton.boxes(random.uniform(-50, 50, (1000, 3)), 0.5)
+
+    def change_for_ever():
+        while True:
+            world.remove(world.add_boxes(boxes))
+
+    for _ in range(3):
+        before = len(world)
+        assert interrupted(change_for_ever) < 2
+        assert len(world) - before in (0, 1000)
+    world.update()
+    assert world.statistics["objects"] == len(world)

@@ -193,7 +193,7 @@ def test_bad_counts_are_an_error(indices, most, code, says):
 
 @pytest.mark.parametrize("width, height", [(0, 9), (9, 0), (16385, 9), (9, 2**32 - 1)])
 def test_a_picture_without_pixels_or_with_too_many_is_an_error(width, height):
-    with pytest.raises(crofton.Error, match="^width, height: ") as raised:
+    with pytest.raises(crofton.Error, match="^picture: ") as raised:
         crofton.DepthCuller().find_visible([], width, height)
     assert raised.value.code == "out_of_range"
 
@@ -219,3 +219,64 @@ def test_a_depth_range_that_is_none_is_an_error():
 def test_what_is_no_mesh_object_or_size_is_a_type_error(call, says):
     with pytest.raises(TypeError, match=says):
         call(crofton.ClusteredMesh(*wall(4, 1.0)))
+
+
+def square_at(x, z, mesh):
+    """A square of 6 by 6 at (x, 0, z), seen at 90 degrees with reversed depth to infinity."""
+    return crofton.DepthObject(mesh, [[1, 0, 0, x], [0, 1, 0, 0], [0, 0, 0, 1], [0, 0, -1, -z]])
+
+
+def test_a_shadow_map_needs_what_throws_shadows_on_what_is_seen():
+    mesh = crofton.ClusteredMesh(*wall(1, 3.0))
+    camera, light = crofton.DepthCuller(), crofton.DepthCuller()
+    # The light is where the camera is: of two casters, one is before the wall that the camera sees, and one beside it.
+    seen = square_at(0, -20, mesh)
+    assert len(camera.find_visible([seen], 160, 90)[0]) == 1
+    casters = [square_at(0, -10, mesh), square_at(30, -35, mesh)]
+    assert light.find_visible(casters, 256, 256)[0].tolist() == [0, 1]
+    receivers = [crofton.DepthReceiver(mesh, seen.to_clip)]
+    assert repr(receivers) == "[DepthReceiver(2 triangles)]"
+    found = light.find_casters(casters, 256, 256, camera, receivers)
+    assert listed(found, casters) == [[0, 1], []]
+    assert light.statistics["objects_listed"] == 1 and light.nearness.shape == (256, 256)
+
+    def refused(item=None, **given):
+        how = {"objects": casters, "width": 256, "height": 256, "seen": camera, "receivers": receivers, **given}
+        with pytest.raises(crofton.Error) as error:
+            light.find_casters(**how)
+        assert error.value.code in ("invalid_argument", "out_of_range") and error.value.item == item
+        return str(error.value)
+
+    other = crofton.ClusteredMesh(*wall(1, 3.0))
+    refused(receivers=[crofton.DepthReceiver(other, seen.to_clip)], item=0)
+    refused(receivers=[crofton.DepthReceiver(None, seen.to_clip)], item=0)
+    refused(receivers=[])
+    assert "radius" in refused(radius=0.0)
+    assert "another DepthCuller" in refused(seen=light)
+    refused(width=0)
+    for wrong in ({"receivers": [seen]}, {"receivers": 3}, {"seen": None}, {"objects": receivers}):
+        with pytest.raises(TypeError):
+            light.find_casters(**{"objects": casters, "width": 9, "height": 9, "seen": camera, "receivers": receivers, **wrong})
+    with pytest.raises(TypeError):
+        crofton.DepthReceiver(mesh, np.eye(3))
+    assert listed(light.find_casters(casters, 256, 256, camera, receivers), casters) == [[0, 1], []]
+
+
+def test_pixels_have_one_sample_or_several():
+    mesh, culler = crofton.ClusteredMesh(*wall(1, 3.0)), crofton.DepthCuller()
+    for samples in (1, 2, 4, 8):
+        assert len(culler.find_visible([square_at(0, -9, mesh)], 160, 90, samples=samples)[0]) == 1
+    with pytest.raises(crofton.Error, match="samples"):
+        culler.find_visible([], 160, 90, samples=3)
+
+
+def test_clusters_are_stored_and_read_again():
+    mesh = crofton.ClusteredMesh(*wall(20, 3.0))
+    stored = crofton.ClusteredMesh.from_bytes(mesh.to_bytes())
+    assert (stored.clusters == mesh.clusters).all() and (stored.triangle_order == mesh.triangle_order).all()
+    for wrong in (b"", mesh.to_bytes()[:-1], mesh.to_bytes()[4:]):
+        with pytest.raises(crofton.Error) as error:
+            crofton.ClusteredMesh.from_bytes(wrong)
+        assert error.value.code == "parse"
+    with pytest.raises(TypeError):
+        crofton.ClusteredMesh.from_bytes("text")

@@ -25,7 +25,7 @@ def examples(cube):
     return [
         box, camera, camera.frustum, crofton.IntrinsicVolumes(1, 2, 3), crofton.Criterion(1), crofton.fit_exact(cube[0]),
         crofton.triangulate([[0, 0], [1, 0], [0, 1]]), crofton.BoxList(crofton.boxes([[0, 0, 0]], 1)), clustered,
-        crofton.DepthObject(clustered, np.eye(4)), crofton.DepthCuller(), crofton.Broadphase(), handle,
+        crofton.DepthObject(clustered, np.eye(4)), crofton.DepthReceiver(clustered, np.eye(4)), crofton.Occluder.box(box), crofton.DepthCuller(), crofton.Broadphase(), handle,
         world.add_node(), world.add_mesh(mesh), region, crofton.World().attach(region, (0, 0, 0)), world.contacts[0].first, world.contacts[0], world,
         world.raycast((0, 0, 5), (0, 0, -1)), world.closest(10, sphere=((5, 0, 0), 1)),
         world.cast(crofton.Shape.sphere(1), (0, 0, -9), [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 5]]),

@@ -443,3 +443,85 @@ def test_who_hides_whom(world, cube):
     assert world.view(crofton.Camera(), occlusion=True).users.tolist() == [2, 3]
     with pytest.raises(crofton.Error):
         world.hidden_by(seen, hidden)  # changed since
+
+
+def test_contacts_of_meshes_name_their_triangles(cube):
+    world = crofton.World(mesh_depth=True)
+    mesh = crofton.Mesh(*cube)
+    handle = world.add_mesh(mesh)
+    first, second = (world.add(mesh=handle, transform=at(x, 0, 0)) for x in (0, 1.5))
+    world.update()
+    (contact,) = world.contacts
+    assert contact.inside == "nothing" and 0.5 <= contact.depth < 0.50001  # enough to end the contact
+    expected = mesh.contacts(mesh, at(1.5, 0, 0))
+    assert len(expected) > 0
+    # The first object's frame is the world's, so that Mesh.contacts gives the same.
+    assert [tuple(c) for c in contact.triangles[["first", "second"]]] == [tuple(c) for c in expected[["first", "second"]]]
+    for name in ("begin", "end", "normal"):
+        assert abs(contact.triangles[name] - expected[name]).max() < 1e-6
+    world.set_transform(second, at(0, 0, 0) @ np.diag([0.5, 0.5, 0.5, 1]))
+    world.update()
+    (contact,) = world.contacts
+    assert contact.inside == "second" and len(contact.triangles) == 0
+
+
+def test_gaps_within_the_margin_are_contacts_of_shapes():
+    ball = crofton.Shape.sphere(1)
+    for margin, count in ((0, 0), (0.5, 1)):
+        world = crofton.World(contact_margin=margin)
+        world.add(shape=ball)
+        world.add(shape=ball, transform=at(2.25, 0, 0))
+        world.update()
+        assert len(world.contacts) == count
+    assert abs(world.contacts[0].depth + 0.25) < 1e-6
+    for wrong in (-1, np.nan, np.inf):
+        with pytest.raises(crofton.Error, match="contact_margin"):
+            crofton.World(contact_margin=wrong)
+
+
+def test_occluders_that_are_given_hide_what_is_behind(cube):
+    positions, indices = cube
+    box = crofton.Box((0, 0, 0), (1, 1, 1))
+    plane = np.array([(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)], dtype="f4"), np.array([0, 1, 2, 0, 2, 3], dtype="u4")
+    kinds = {"box": crofton.Occluder.box(box), "walled": crofton.Occluder.walled(box), "convex": crofton.Occluder.convex(positions),
+             "patch": crofton.Occluder.patch(*plane)}
+    world = crofton.World()
+    mesh = world.add_mesh(positions, indices)
+    wall = world.add(mesh=mesh, transform=at(0, 0, -5))
+    hidden = world.add(sphere=((0, 0, -9), 0.25))
+    world.update()
+
+    def seen():
+        world.update()
+        return hidden.index in world.view(crofton.Camera(), occlusion=True).ids
+
+    assert seen()
+    for name, occluder in kinds.items():
+        assert repr(occluder) == f"Occluder({name})"
+        world.set_occluders(mesh, [occluder])
+        assert not seen(), name
+        world.set_occluders(mesh, [])
+        assert seen()
+    world.set_occluders(mesh, [crofton.Occluder.patch(crofton.Mesh(*plane), one_sided=True)])
+    assert not seen()
+    world.set_transform(wall, at(0, 0, -5) @ np.diag([-1.0, 1, -1, 1]))  # its back: it hides nothing
+    assert seen()
+    world.set_occluders(mesh, list(kinds.values()))
+    world.set_vertices(mesh, positions)
+    assert seen()
+
+    world.set_occluders(mesh, [kinds["box"]])
+    assert not seen()
+    for wrong in ([kinds["box"], crofton.Occluder.patch(plane[0], [0, 1, 9])],
+                  [kinds["box"], crofton.Occluder.convex(plane[0] * np.nan)]):
+        with pytest.raises(crofton.Error) as error:
+            world.set_occluders(mesh, wrong)
+        assert error.value.item == 1
+    with pytest.raises(TypeError):
+        world.set_occluders(mesh, [box])
+    world.remove(wall)
+    world.update()
+    world.remove(mesh)
+    with pytest.raises(crofton.Error) as error:
+        world.set_occluders(mesh, [])
+    assert error.value.code == "stale_handle"

@@ -50,7 +50,8 @@ pub use queries::{
 pub use queries::{ShapeHit, TrackedPoint};
 pub use regions::{AttachedRegion, Region, RegionObject, RegionOptions};
 pub use shape::{
-    CastOptions, HeightField, Impact, MassProperties, Motion, Part, Penetration, Placed, Shape, ShapeRayHit,
+    CastOptions, HeightField, Impact, MassProperties, Motion, NearestPoint, Part, Penetration, Placed, Shape,
+    ShapeContact, ShapePoint, ShapeRayHit,
 };
 pub use triangulate::{Method, Triangulation, Triangulator};
 pub use views::{Cluster, ClusterBox, Clusters, DrawLimits, PictureView, Seen, SeenByMany, ShadowReceivers};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //! Shapes, convex or of convex parts: by themselves, on objects, and as probes of a World.
 use crate::error::check;
-use crate::{sys, Ray, Result, Separation, Transform};
+use crate::{sys, Feature, Ray, Result, Separation, Transform};
 use std::{mem::size_of, ptr};
 
 /// A solid or a surface. It never changes; what uses it keeps what it needs of it. Solids of revolution have y as axis,
@@ -85,6 +85,46 @@ pub struct Penetration {
     pub depth: f64,
     /// Unit, from the first to the second.
     pub normal: [f64; 3],
+}
+
+/// A contact point of two shapes. Features and parts stay the same while the same features touch.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ShapePoint {
+    /// Midway between the surfaces, in the world.
+    pub position: [f64; 3],
+    /// Along the normal; negative: a gap.
+    pub depth: f64,
+    /// On the first shape.
+    pub on_a: Feature,
+    /// On the second.
+    pub on_b: Feature,
+    /// Of the first shape.
+    pub part_a: Part,
+    /// Of the second.
+    pub part_b: Part,
+}
+
+/// Where two shapes touch: their deepest contact.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ShapeContact {
+    /// Unit, from the first to the second.
+    pub normal: [f64; 3],
+    /// Of the deepest point.
+    pub depth: f64,
+    /// None if the shapes are farther apart than the margin.
+    pub points: Vec<ShapePoint>,
+}
+
+/// The point of a shape that is nearest to another point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NearestPoint {
+    /// 0 inside a solid.
+    pub distance: f64,
+    /// Of the shape.
+    pub point: [f64; 3],
+    /// The part that it lies on.
+    pub part: Part,
 }
 
 /// A motion: `pivot`, in the shape's frame, moves by `velocity * t`, and the shape turns about it by `|spin| * t` radians
@@ -292,6 +332,33 @@ impl Placed<'_> {
         p.size = size_of::<sys::ShapePenetration>();
         check(unsafe { sys::crofton_shapes_penetration(&self.raw(), &other.raw(), ptr::null_mut(), &mut p) })?;
         Ok((p.overlapping != 0).then_some(Penetration { depth: p.depth, normal: p.normal }))
+    }
+    /// Returns where the shapes touch: up to `max_points` points, 1 to 8. Gaps of up to `margin` count.
+    ///
+    /// ```
+    /// # use crofton::{Shape, Transform};
+    /// # fn main() -> Result<(), crofton::Error> {
+    /// let (floor, cube) = (Shape::half_space([0.0, -1.0, 0.0], 0.0)?, Shape::cuboid([1.0; 3])?);
+    /// let standing = cube.at(Transform::at([0.0, 0.75, 0.0]));
+    /// let contact = floor.at(Transform::IDENTITY).contacts(&standing, 0.0, 4)?;
+    /// assert!(contact.points.len() == 4 && (contact.depth - 0.25).abs() < 1e-6);
+    /// # Ok(()) }
+    /// ```
+    pub fn contacts(&self, other: &Placed, margin: f64, max_points: u32) -> Result<ShapeContact> {
+        let options = sys::ManifoldOptions { size: size_of::<sys::ManifoldOptions>(), margin, max_points };
+        let mut m: sys::ShapeManifold = unsafe { std::mem::zeroed() };
+        m.size = size_of::<sys::ShapeManifold>();
+        check(unsafe { sys::crofton_shapes_manifold(&self.raw(), &other.raw(), &options, ptr::null_mut(), &mut m) })?;
+        let points = m.points[..m.point_count as usize].to_vec();
+        Ok(ShapeContact { normal: m.normal, depth: m.depth, points })
+    }
+    /// Returns the point of the shape that is nearest to `point`.
+    pub fn closest_point(&self, point: [f64; 3]) -> Result<NearestPoint> {
+        let mut d: sys::ShapeDistance = unsafe { std::mem::zeroed() };
+        d.size = size_of::<sys::ShapeDistance>();
+        check(unsafe { sys::crofton_shape_closest_point(&self.raw(), point.as_ptr(), &mut d) })?;
+        // a is the point
+        Ok(NearestPoint { distance: d.distance, point: d.on_b, part: d.part_b })
     }
     /// Returns when this shape, moving, first touches another, if it does in that time.
     pub fn cast(

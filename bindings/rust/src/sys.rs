@@ -571,6 +571,22 @@ pub struct Manifold {
 }
 
 #[repr(C)]
+pub struct ShapeManifold {
+    pub size: usize,
+    pub normal: [f64; 3],
+    pub depth: f64,
+    pub point_count: u32,
+    pub points: [crate::ShapePoint; MAX_MANIFOLD_POINTS],
+}
+
+#[repr(C)]
+pub struct ManifoldOptions {
+    pub size: usize,
+    pub margin: f64,
+    pub max_points: u32,
+}
+
+#[repr(C)]
 pub struct FitOptions {
     pub size: usize,
     pub quality: u32,
@@ -644,6 +660,12 @@ extern "C" {
     pub fn crofton_shapes_penetration(
         a: *const Placed, b: *const Placed, cache: *mut c_void, penetration: *mut ShapePenetration,
     ) -> Status;
+    pub fn crofton_shapes_manifold(
+        a: *const Placed, b: *const Placed, options: *const ManifoldOptions, cache: *mut c_void,
+        manifold: *mut ShapeManifold,
+    ) -> Status;
+    pub fn crofton_shape_closest_point(shape: *const Placed, point: *const f64, distance: *mut ShapeDistance)
+        -> Status;
     pub fn crofton_default_cast_options() -> CastOptions;
     pub fn crofton_shapes_cast(
         a: *const Placed, motion_a: *const crate::Motion, b: *const Placed, motion_b: *const crate::Motion,

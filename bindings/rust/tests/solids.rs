@@ -61,6 +61,33 @@ fn surfaces_and_half_spaces_have_sides() {
 }
 
 #[test]
+fn a_box_on_a_floor_has_four_contact_points() {
+    let (floor, cube) = (Shape::half_space([0.0, -1.0, 0.0], 0.0).unwrap(), Shape::cuboid([1.0, 2.0, 3.0]).unwrap());
+    let (ground, at) = (floor.at(Transform::default()), |y| cube.at(Transform::at([0.0, y, 0.0])));
+    let contact = ground.contacts(&at(1.75), 0.0, 4).unwrap();
+    assert_eq!(contact.points.len(), 4);
+    near(contact.depth, 0.25, 1e-9);
+    near(contact.normal[1], 1.0, 1e-9);
+    for point in &contact.points {
+        near(point.depth, 0.25, 1e-9);
+        near(point.position[0].abs(), 1.0, 1e-6);
+        near(point.position[1], -0.125, 1e-6);
+        near(point.position[2].abs(), 3.0, 1e-6);
+    }
+    assert_eq!(ground.contacts(&at(1.75), 0.0, 1).unwrap().points.len(), 1);
+    assert!(ground.contacts(&at(2.5), 0.25, 4).unwrap().points.is_empty());
+    near(ground.contacts(&at(2.5), 1.0, 4).unwrap().depth, -0.5, 1e-9);
+    assert_eq!(ground.contacts(&at(2.5), -1.0, 4).unwrap_err().status, Status::InvalidArgument);
+    assert_eq!(ground.contacts(&at(2.5), 0.0, 9).unwrap_err().status, Status::OutOfRange);
+
+    let nearest = at(0.0).closest_point([0.0, 5.0, 4.0]).unwrap();
+    near(nearest.distance, 10.0f64.sqrt(), 1e-9);
+    near(nearest.point[1], 2.0, 1e-9);
+    assert_eq!(at(0.0).closest_point([0.0, 1.0, 1.0]).unwrap().distance, 0.0);
+    assert_eq!(at(0.0).closest_point([0.0, f64::NAN, 0.0]).unwrap_err().status, Status::NotFinite);
+}
+
+#[test]
 fn a_shape_that_moves_meets_another_in_time() {
     let (a, b) = (Shape::sphere(1.0).unwrap(), Shape::cuboid([1.0; 3]).unwrap());
     let (from, at) = (a.at(Transform::at([-10.0, 0.0, 0.0])), b.at(Transform::default()));

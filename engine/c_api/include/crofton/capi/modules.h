@@ -427,6 +427,7 @@ CROFTON_API crofton_status crofton_shapes_distance(const crofton_placed* a, cons
 CROFTON_API crofton_status crofton_shapes_penetration(const crofton_placed* a, const crofton_placed* b,
                                                       crofton_pair_cache* cache,
                                                       crofton_shape_penetration* penetration);
+/* The same from a point to a shape; a is the point. */
 CROFTON_API crofton_status crofton_shape_closest_point(const crofton_placed* shape, const double point[3],
                                                        crofton_shape_distance* distance);
 /* Returns where the shapes touch: the deepest manifold. crofton_shape_contacts_update returns all, and keeps points
