@@ -84,7 +84,7 @@ static class SolidTests {
             Expect.Near(Math.Sqrt(10), at(0).ClosestPoint(new Vector3(0, 5, 4), out nearest));
             Expect.Near(2, nearest.Y);
             Expect.Near(0, at(0).ClosestPoint(new Vector3(0, 1, 1), out nearest));
-            Expect.Fails(Status.NotFinite, () => at(0).ClosestPoint(new Vector3(0, double.NaN, 0), out nearest));
+            Expect.Fails(Status.NonFinite, () => at(0).ClosestPoint(new Vector3(0, double.NaN, 0), out nearest));
         }
     }
     [Test] static void AShapeThatMovesMeetsAnotherInTime() {

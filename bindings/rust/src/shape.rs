@@ -340,7 +340,7 @@ impl Placed<'_> {
     /// # fn main() -> Result<(), crofton::Error> {
     /// let (floor, cube) = (Shape::half_space([0.0, -1.0, 0.0], 0.0)?, Shape::cuboid([1.0; 3])?);
     /// let standing = cube.at(Transform::at([0.0, 0.75, 0.0]));
-    /// let contact = floor.at(Transform::IDENTITY).contacts(&standing, 0.0, 4)?;
+    /// let contact = floor.at(Transform::default()).contacts(&standing, 0.0, 4)?;
     /// assert!(contact.points.len() == 4 && (contact.depth - 0.25).abs() < 1e-6);
     /// # Ok(()) }
     /// ```

@@ -84,7 +84,7 @@ fn a_box_on_a_floor_has_four_contact_points() {
     near(nearest.distance, 10.0f64.sqrt(), 1e-9);
     near(nearest.point[1], 2.0, 1e-9);
     assert_eq!(at(0.0).closest_point([0.0, 1.0, 1.0]).unwrap().distance, 0.0);
-    assert_eq!(at(0.0).closest_point([0.0, f64::NAN, 0.0]).unwrap_err().status, Status::NotFinite);
+    assert_eq!(at(0.0).closest_point([0.0, f64::NAN, 0.0]).unwrap_err().status, Status::NonFinite);
 }
 
 #[test]
