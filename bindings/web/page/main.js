@@ -134,8 +134,8 @@ class Page {
         const { gl } = this, { canvas } = gl, scale = Math.min(devicePixelRatio, 1.5);
         const [width, height] = [Math.max(1, canvas.clientWidth * scale | 0), Math.max(1, canvas.clientHeight * scale | 0)];
         if (canvas.width !== width || canvas.height !== height) [canvas.width, canvas.height] = [width, height];
+        this.walk(seconds);  // a key ends the flight
         if (this.flying) this.fly(seconds);
-        else this.walk(seconds);
         const viewer = cameraOf(this.pose, width / height), camera = this.frozen ? cameraOf(this.frozen, width / height) : viewer;
         const key = JSON.stringify([camera, width, height, this.occlusion, Boolean(this.frozen), this.all]), changed = key !== this.key;
         if (changed) this.cull(camera, { width, height });
