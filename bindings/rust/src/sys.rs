@@ -664,8 +664,7 @@ extern "C" {
         a: *const Placed, b: *const Placed, options: *const ManifoldOptions, cache: *mut c_void,
         manifold: *mut ShapeManifold,
     ) -> Status;
-    pub fn crofton_shape_closest_point(shape: *const Placed, point: *const f64, distance: *mut ShapeDistance)
-        -> Status;
+    pub fn crofton_shape_closest_point(a: *const Placed, point: *const f64, nearest: *mut ShapeDistance) -> Status;
     pub fn crofton_default_cast_options() -> CastOptions;
     pub fn crofton_shapes_cast(
         a: *const Placed, motion_a: *const crate::Motion, b: *const Placed, motion_b: *const crate::Motion,
