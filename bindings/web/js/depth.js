@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Triangles that a picture needs, of meshes that no World holds.
-import { failure } from './error.js';
-import { Owned, create, numbersOf } from './memory.js';
+import { Owned, checkRecords, create, handleOf, numbersOf } from './memory.js';
 import { trianglesIn } from './records.js';
-import { ClusteredMesh } from './shape.js';
 import { writePicture } from './views.js';
 
 const OBJECT = 84, RECEIVER = 72;
-const meshOf = (mesh, i) => {
-    if (!(mesh instanceof ClusteredMesh)) throw failure(1, '`mesh` is a ClusteredMesh', i);
-    return mesh.handle;
-};
 const writeMatrix = ({ floats }, at, matrix, what) => floats.set(numbersOf(matrix, 16, what), at >> 2);
 
 /** Finds the triangles of pictures, and of shadow maps. Keeps its buffers from one to the next. */
@@ -32,28 +26,29 @@ export class DepthCuller extends Owned {
      * `objects` are those of that call, each `{ mesh, toMap, solid }`.
      */
     findCasters(objects, map, { seen, objects: receivers = [], radius = 1 } = {}) {
-        if (!(seen instanceof DepthCuller)) throw failure(1, 'receivers: `seen` is a DepthCuller');
-        const { memory } = this;
+        const { memory } = this, camera = handleOf(memory, seen, 'DepthCuller');
+        checkRecords(receivers, 'objects');
         return memory.lend([new Float64Array(3 + 9 * receivers.length)], (at) => {
             receivers.forEach(({ mesh, toMap, solid = false }, i) => {
                 const place = at + 24 + RECEIVER * i;
-                memory.words[place >> 2] = mesh ? meshOf(mesh, i) : 0;
+                memory.words[place >> 2] = mesh ? handleOf(memory, mesh, 'ClusteredMesh', i) : 0;
                 writeMatrix(memory, place + 4, toMap, 'toMap');
                 memory.words[place + 68 >> 2] = solid ? 1 : 0;
             });
             memory.fill('default_depth_receivers', at);
-            memory.words.set([seen.handle, at + 24, receivers.length], (at >> 2) + 1);
+            memory.words.set([camera, at + 24, receivers.length], (at >> 2) + 1);
             memory.doubles[(at >> 3) + 2] = radius;
             return this.#find('find_casters', objects, map, at);
         });
     }
     #find(name, objects, picture, ...receivers) {
         const { memory, handle } = this;
+        checkRecords(objects, 'objects');
         return memory.lend([new Float64Array(12), new Uint8Array(OBJECT * objects.length)], (at, first) => {
             objects.forEach(({ mesh, toClip, oneSided = false, hides = true, positionError = 0 }, i) => {
                 const place = first + OBJECT * i;
                 memory.fill('default_depth_object', place);
-                memory.words[place + 4 >> 2] = meshOf(mesh, i);
+                memory.words[place + 4 >> 2] = handleOf(memory, mesh, 'ClusteredMesh', i);
                 writeMatrix(memory, place + 8, toClip, 'toClip');
                 memory.words.set([oneSided ? 1 : 0, hides ? 1 : 0], place + 72 >> 2);
                 memory.floats[place + 80 >> 2] = positionError;

@@ -86,7 +86,7 @@ export class Frustum extends Owned {
         }
     }
     /** Members that are left out have their defaults: at the origin, along -z, 60 degrees, 16:9, from 0.1 to 1000. */
-    setCamera(camera) {
+    setCamera(camera = {}) {
         this.memory.call('frustum_from_camera', writeCamera(this.memory, camera), this.handle + 8);
         return this;
     }

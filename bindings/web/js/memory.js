@@ -20,6 +20,7 @@ export function checkArray(array, kinds, what) {
 
 /** Returns a vector's numbers. Throws if their number is not `count`. */
 export function numbersOf(vector, count, what) {
+    if (ArrayBuffer.isView(vector)) checkArray(vector, [vector.constructor], what);
     const numbers = Array.from(vector ?? []);
     if (numbers.length !== count) throw failure(1, `${what} must have ${count} numbers, and there are ${numbers.length}`);
     return numbers;
@@ -28,6 +29,14 @@ export function numbersOf(vector, count, what) {
 /** Throws if an array does not consist of whole groups of `count` numbers. */
 export function checkGroups(array, count, what) {
     if (array.length % count) throw failure(1, `${what} must have ${count} numbers each, and there are ${array.length}`);
+}
+
+/** Throws unless `list` is an array of objects. */
+export function checkRecords(list, what) {
+    if (!Array.isArray(list)) throw failure(1, `${what} must be an array`);
+    const bad = list.findIndex((item) => typeof item !== 'object' || item === null);
+    if (bad >= 0) throw failure(1, `${what}: item ${bad} is no object`, bad);
+    return list;
 }
 
 /** Converts indices for the library. Throws for numbers that are not integers of 32 bits. */
@@ -101,6 +110,7 @@ export class Memory {
         try {
             status = this.module[`_crofton_${name}`](...given);
         } catch (error) {
+            if (error instanceof TypeError) throw failure(1, `crofton_${name}: a number is expected: ${error.message}`);
             throw failure(13, `crofton_${name} stopped: ${error?.message ?? error}`);
         }
         if (this.#thrown) {
@@ -155,12 +165,20 @@ export class Owned {
         return this.#place;
     }
     get memory() { return this.#memory; }
+    get typeName() { return this.#name; }
     free() {
         if (!this.#place) return;
         forgotten.unregister(this);
         this.#memory.module[this.#release](this.#place);
         this.#place = 0;
     }
+}
+
+/** The handle of an argument. Throws unless it is a `name` of this library; `item`: its place in a list. */
+export function handleOf(memory, thing, name, item) {
+    if (!(thing instanceof Owned && thing.typeName === name)) throw failure(1, `a ${name} is expected here`, item);
+    if (thing.memory !== memory) throw failure(1, `this ${name} comes from another call of load()`, item);
+    return thing.handle;
 }
 
 /** Calls crofton_NAME_create, whose last parameter takes the handle. */

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Queries of two shapes, or of a shape and a ray or a point, without a World.
-import { failure } from './error.js';
 import { Shape, writeCast, writePlaced } from './shape.js';
 import { numbersOf } from './memory.js';
 import { vectorAt, writeRay } from './records.js';

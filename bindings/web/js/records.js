@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What calls take and return, in the library's memory: handles, numbers of 64 bits, transforms, bounds.
 import { failure } from './error.js';
-import { checkArray, checkGroups, numbersOf } from './memory.js';
+import { checkArray, checkGroups, handleOf, numbersOf } from './memory.js';
 import { BOX, roundedUp } from './geometry.js';
 
 export const ALL = 0xffffffff;
@@ -81,5 +81,5 @@ export function meshArrays(positions, indices) {
 export function writeMesh(memory, at, places, corners, positions, indices, { clusters = false, oneSided = false, triangles = true, precut } = {}) {
     memory.fill('default_mesh_data', at);
     memory.words.set([places, positions.length / 3, 0, corners, indices.length, 0, indices instanceof Uint16Array ? 1 : 0,
-        triangles ? 1 : 0, clusters ? 1 : 0, oneSided ? 1 : 0, precut?.handle ?? 0], (at >> 2) + 1);
+        triangles ? 1 : 0, clusters ? 1 : 0, oneSided ? 1 : 0, precut ? handleOf(memory, precut, 'ClusteredMesh') : 0], (at >> 2) + 1);
 }

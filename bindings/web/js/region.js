@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 import { failure } from './error.js';
-import { Owned, create } from './memory.js';
+import { Owned, checkRecords, handleOf } from './memory.js';
 import { ALL, halvesOf, layersOf, meshArrays, writeBound, writeMesh, writeTransform } from './records.js';
-import { shapeOf } from './shape.js';
 
 /**
  * Many objects that do not move, relative to an origin: `World.attach`, which takes microseconds. An object is that of `World.add`, but its
@@ -10,7 +9,8 @@ import { shapeOf } from './shape.js';
  */
 export class Region extends Owned {
     constructor(memory, objects, { meshes = [], findOccluders = false } = {}) {
-        const arrays = meshes.flatMap(({ positions, indices }) => meshArrays(positions, indices));
+        checkRecords(objects, 'objects');
+        const arrays = checkRecords(meshes, 'meshes').flatMap(({ positions, indices }) => meshArrays(positions, indices));
         const records = new Float64Array(25 * objects.length), transforms = new Float64Array(12 * objects.length);
         const handle = memory.lend([records, transforms, new Uint8Array(48 * meshes.length), new Float64Array(6), ...arrays],
             (first, poses, described, options, ...places) => {
@@ -22,7 +22,7 @@ export class Region extends Owned {
                     words.set(halvesOf(user), at + 160 >> 2);
                     words.set([layersOf(layers), layersOf(collidesWith), mesh ?? ALL, occludes ? 1 : 0, onlyOccludes ? 1 : 0], at + 168 >> 2);
                     if (transform) words[at + 188 >> 2] = writeTransform(memory, poses + 96 * i, transform);
-                    if (shape) words[at + 192 >> 2] = shapeOf(shape).handle;
+                    if (shape) words[at + 192 >> 2] = handleOf(memory, shape, 'Shape', i);
                 });
                 meshes.forEach(({ positions, indices, ...how }, i) => writeMesh(memory, described + 48 * i, places[2 * i], places[2 * i + 1], positions, indices, how));
                 memory.fill('default_region_options', options);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 import { failure } from './error.js';
-import { Owned, checkArray, checkGroups, create, numbersOf } from './memory.js';
+import { Owned, checkArray, checkGroups, checkRecords, create, handleOf, numbersOf } from './memory.js';
 import { IDENTITY, clustersAt, meshArrays, vectorAt, writeTransform } from './records.js';
 
 const points = (array, what) => {
@@ -34,14 +34,17 @@ const KINDS = {
             doubles.set(numbersOf(spacing, 2, 'spacing'), at + 168 >> 3);
             [words[at + 116 >> 2], words[at + 120 >> 2]] = [at + 144, frontOnly ? 1 : 0];
         } },
-    compound: { kind: 10, lend: (children) => [new Uint32Array(children.map(({ shape }) => shapeOf(shape).handle)), new Float64Array(12 * children.length)],
+    compound: { kind: 10, lend: (children) => [new Uint32Array(checkRecords(children, 'compound').length), new Float64Array(12 * children.length)],
         write: (children, memory, at, [shapes, poses]) => {
-            children.forEach(({ transform = IDENTITY }, i) => writeTransform(memory, poses + 96 * i, transform));
+            children.forEach(({ shape, transform = IDENTITY }, i) => {
+                memory.words[(shapes >> 2) + i] = handleOf(memory, shape, 'Shape', i);
+                writeTransform(memory, poses + 96 * i, transform);
+            });
             memory.words.set([shapes, poses, children.length], at + 128 >> 2);
         } },
-    rounded: { kind: 11, write: ({ core, radius }, { words, floats }, at) => {
-        words[at + 124 >> 2] = shapeOf(core).handle;
-        floats[at + 8 >> 2] = radius;
+    rounded: { kind: 11, write: ({ core, radius }, memory, at) => {
+        memory.words[at + 124 >> 2] = handleOf(memory, core, 'Shape');
+        memory.floats[at + 8 >> 2] = radius;
     } },
 };
 function writeRound({ radius, halfHeight }, { floats }, at) { floats.set([radius, halfHeight], at + 8 >> 2); }
@@ -49,7 +52,7 @@ function writeRound({ radius, halfHeight }, { floats }, at) { floats.set([radius
 /** A solid or a surface: `{ KIND: what it is made of }`. It never changes; what uses it keeps what it needs of it. */
 export class Shape extends Owned {
     constructor(memory, description = {}) {
-        const [name, ...more] = Object.keys(description), kind = KINDS[name], given = description[name];
+        const [name, ...more] = Object.keys(description ?? {}), kind = KINDS[name], given = description?.[name];
         if (!kind || more.length || !given) throw failure(1, `a shape is one of ${Object.keys(KINDS).join(', ')}`);
         const handle = memory.lend([...kind.lend?.(given) ?? [], new Float64Array(24)], (...places) => {
             const at = places.pop();
@@ -76,14 +79,9 @@ export class Shape extends Owned {
     }
 }
 
-export function shapeOf(shape) {
-    if (!(shape instanceof Shape)) throw failure(1, 'this is no Shape');
-    return shape;
-}
-
 /** Writes a shape at a pose, 104 bytes. */
 export function writePlaced(memory, at, shape, transform = IDENTITY) {
-    memory.words.set([shapeOf(shape).handle, writeTransform(memory, at + 8, transform)], at >> 2);
+    memory.words.set([handleOf(memory, shape, 'Shape'), writeTransform(memory, at + 8, transform)], at >> 2);
     return at;
 }
 

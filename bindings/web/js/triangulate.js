@@ -8,8 +8,9 @@ const METHOD = { __proto__: null, ear: 0, delaunay: 1, minimumWeight: 2 };
 export class Triangulator extends Owned {
     constructor(memory) { super(memory, 'Triangulator', create(memory, 'triangulator'), '_crofton_triangulator_destroy'); }
     /** `points`: x y each; `ringEnds`: the end of each ring, the outer one first. `indices` is a copy, three per triangle. */
-    triangulate(points, ringEnds = [points.length / 2], method = 'minimumWeight') {
+    triangulate(points, ringEnds, method = 'minimumWeight') {
         checkArray(points, [Float64Array], 'points');
+        ringEnds ??= [points.length / 2];
         checkGroups(points, 2, 'points');
         if (!(method in METHOD)) throw failure(1, `method is one of ${Object.keys(METHOD).join(', ')}`);
         const { memory } = this, { handle } = this;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Views: their requests, and their answers.
 import { failure } from './error.js';
-import { Owned, checkArray, create, numbersOf } from './memory.js';
+import { Owned, checkArray, checkRecords, create, handleOf, numbersOf } from './memory.js';
 import { DEPTH, writeCamera } from './geometry.js';
 import { ALL, layersOf, trianglesIn } from './records.js';
 
@@ -31,9 +31,9 @@ export class ViewResult extends Owned {
     }
     /** A copy: for each of `ids`, bit v says whether view v sees the object. `world` is that of the view. */
     masks(world) {
-        const { memory, length } = this;
+        const { memory, length } = this, of = handleOf(memory, world, 'World');
         return memory.lend([new Float64Array(2 * length), new Uint32Array(length)], (objects, masks) => {
-            memory.call('view_result_list', this.handle, world.handle, 0, objects, masks, length);
+            memory.call('view_result_list', this.handle, of, 0, objects, masks, length);
             return memory.words.slice(masks >> 2, (masks >> 2) + length);
         });
     }
@@ -108,7 +108,7 @@ const REQUEST = 52, PARTS = 512;
 
 /** Calls `ask` with the place of the requests' structs, 52 bytes each, in memory that lasts as long as the call. */
 export function withRequests(memory, requests, ask) {
-    const arrays = requests.map(arraysOf);
+    const arrays = checkRecords(requests, 'requests').map(arraysOf);
     return memory.lend(arrays.flat().map(({ array }) => array), (...places) => {
         const parts = REQUEST * requests.length + 7 & ~7, at = memory.scratch(parts + PARTS * requests.length);
         requests.forEach((request, i) =>
@@ -145,7 +145,7 @@ function writeRequest(memory, { camera, matrix, depth = 'minusOneToOne', origin,
         doubles.set(matrix, (place >> 3) + 6);
         words[first + 2] = place;
     }
-    if (volume) words[first + 3] = volume.handle + 8;
+    if (volume) words[first + 3] = handleOf(memory, volume, 'Frustum') + 8;
     words[first + 4] = layersOf(layers);
     if (occlusion) {
         const options = at + 432;
@@ -167,9 +167,8 @@ function writeRequest(memory, { camera, matrix, depth = 'minusOneToOne', origin,
     if (picture) words[first + 11] = writePicture(memory, at + 464, picture);
     if (receivers) {
         const { seen, radius = 1 } = receivers, place = at + 496;
-        if (!(seen instanceof ViewResult)) throw failure(1, 'receivers: `seen` is a ViewResult');
         memory.fill('default_shadow_receivers', place);
-        words[(place >> 2) + 1] = seen.handle;
+        words[(place >> 2) + 1] = handleOf(memory, seen, 'ViewResult');
         doubles[(place >> 3) + 1] = radius;
         words[first + 12] = place;
     }

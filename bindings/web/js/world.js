@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 import { failure } from './error.js';
-import { Owned, checkArray, checkGroups, create, numbersOf } from './memory.js';
+import { Owned, checkArray, checkGroups, checkRecords, create, handleOf, numbersOf } from './memory.js';
 import { ALL, IDENTITY, clustersAt, giveHandle, halvesOf, handleAt, layersOf, meshArrays, refAt, userAt, vectorAt, writeBound, writeBox, writeMesh,
     writeRay, writeTransform } from './records.js';
-import { shapeOf, writeCast, writePlaced } from './shape.js';
+import { writeCast, writePlaced } from './shape.js';
 import { withRequests } from './views.js';
 
 const PHASES = ['began', 'stayed', 'ended'], INSIDE = ['nothing', 'first', 'second', 'partly'];
@@ -72,7 +72,7 @@ export class World extends Owned {
      */
     setOccluders(mesh, occluders) {
         const { memory, handle } = this, kinds = ['box', 'walled', 'convex', 'patch'], none = new Float32Array(0);
-        const arrays = occluders.flatMap(({ convex, patch }) =>
+        const arrays = checkRecords(occluders, 'occluders').flatMap(({ convex, patch }) =>
             patch ? meshArrays(patch.positions, Uint32Array.from(patch.indices)) : [convex ? checkArray(convex, [Float32Array], 'convex') : none, none]);
         memory.lend([new Float64Array(29 * occluders.length + 1), ...arrays], (first, ...places) => {
             occluders.forEach((occluder, i) => {
@@ -113,7 +113,7 @@ export class World extends Owned {
      * under a `node` or in the world. A shape beside another is what rays, casts and contacts use. `user`: a number. `onlyOccludes`: no answer
      * contains the object, but its mesh hides others.
      */
-    add({ box, sphere, mesh, shape, transform, node, user = 0, layers = ALL, collidesWith = ALL, occludes = true, onlyOccludes = false, hidden = false }) {
+    add({ box, sphere, mesh, shape, transform, node, user = 0, layers = ALL, collidesWith = ALL, occludes = true, onlyOccludes = false, hidden = false } = {}) {
         const given = [box, sphere, mesh].filter(Boolean).length;
         if (given > 1 || given === 0 && !shape) throw failure(1, 'an object has one of box, sphere and mesh, or only a shape');
         const { memory } = this, at = memory.scratch(72 + 160 + 96 + 16), { words } = memory, first = at >> 2;
@@ -123,7 +123,7 @@ export class World extends Owned {
         if (transform) words[first + 5] = writeTransform(memory, at + 232, transform);
         if (mesh) giveHandle(memory, mesh, 'mesh', at + 32), words[first + 6] = 1;
         if (node) giveHandle(memory, node, 'node', at + 40), words[first + 7] = 1;
-        words.set([layersOf(layers), layersOf(collidesWith), occludes ? 1 : 0, onlyOccludes ? 1 : 0, shape ? shapeOf(shape).handle : 0,
+        words.set([layersOf(layers), layersOf(collidesWith), occludes ? 1 : 0, onlyOccludes ? 1 : 0, shape ? handleOf(memory, shape, 'Shape') : 0,
             hidden ? 1 : 0], first + 12);
         memory.call('world_add', this.handle, at, at + 328);
         return handleAt(memory, at + 328, 'object');
@@ -154,7 +154,7 @@ export class World extends Owned {
     }
     /** Null removes the shape; not of an object that was added with only one. */
     setShape(object, shape) {
-        this.#set(object, 128, (words, first) => { words[first + 16] = shape === null ? 0 : shapeOf(shape).handle; });
+        this.#set(object, 128, (words, first) => { words[first + 16] = shape === null ? 0 : handleOf(this.memory, shape, 'Shape'); });
     }
     setBox(object, box) {
         this.#set(object, 64, (words, first) => {
@@ -207,9 +207,9 @@ export class World extends Owned {
 
     /** Attaches a Region: from the next update on, answers contain its objects, moved by `origin`. */
     attach(region, origin = [0, 0, 0]) {
-        const { memory } = this, at = memory.scratch(32);
+        const { memory } = this, given = handleOf(memory, region, 'Region'), at = memory.scratch(32);
         memory.doubles.set(numbersOf(origin, 3, 'origin'), at >> 3);
-        memory.call('world_attach', this.handle, region.handle, at, at + 24);
+        memory.call('world_attach', this.handle, given, at, at + 24);
         return handleAt(memory, at + 24, 'region');
     }
     /** Handles of the region's objects are stale at once; views follow with the next update. */
@@ -239,17 +239,17 @@ export class World extends Owned {
      * Uint32Array; `treeOrder`, `conservative`. An array of up to 32 requests is answered at once, each object listed once.
      */
     view(request, visible) {
-        const { memory } = this, requests = Array.isArray(request) ? request : [request];
-        withRequests(memory, requests, (at) => memory.call('world_view', this.handle, at, requests.length, 0, visible.handle));
+        const { memory } = this, requests = Array.isArray(request) ? request : [request], result = handleOf(memory, visible, 'ViewResult');
+        withRequests(memory, requests, (at) => memory.call('world_view', this.handle, at, requests.length, 0, result));
         return visible;
     }
     /** Lists the occluders that hide an object in a view alone, `{ object, user, place }`; without an object all that were drawn. */
     hiddenBy(visible, object) {
-        const { memory } = this, at = memory.scratch(16), hidden = object ? giveHandle(memory, object, 'object', at) : 0;
-        memory.call('view_result_occluders', visible.handle, this.handle, hidden, 0, 0, at + 8);
+        const { memory } = this, result = handleOf(memory, visible, 'ViewResult'), at = memory.scratch(16), hidden = object ? giveHandle(memory, object, 'object', at) : 0;
+        memory.call('view_result_occluders', result, this.handle, hidden, 0, 0, at + 8);
         const count = memory.words[at + 8 >> 2];
         return memory.lend([new Float64Array(3 * count)], (place) => {
-            memory.call('view_result_occluders', visible.handle, this.handle, hidden, place, count, at + 8);
+            memory.call('view_result_occluders', result, this.handle, hidden, place, count, at + 8);
             return Array.from({ length: count }, (_, i) => ({ ...refAt(memory, place + 24 * i), place: memory.words[place + 24 * i + 16 >> 2] }));
         });
     }
@@ -340,7 +340,7 @@ export class World extends Owned {
      * Returns the first object that a shape meets which moves by `velocity` and turns by `spin` radians a unit of time about its `pivot`:
      * `{ object, user, time, normal, point, triangle, distance, unresolved }`, or null. The objects are at rest.
      */
-    cast({ shape, transform }, how, layers = ALL) {
+    cast({ shape, transform } = {}, how, layers = ALL) {
         const { memory } = this, at = memory.scratch(304), motion = at + 104, options = at + 176, hit = at + 208;
         writeCast(memory, how, motion, options);
         memory.words[hit >> 2] = 96;

@@ -209,4 +209,39 @@ for (const build of BUILDS) {
         camera.free();
         fails({ seen: camera, objects }, 'bad handle');
     });
+    here('arguments of another kind, of another library, or detached, are named', async () => {
+        const other = await loadBuild(build), world = new crofton.World(), visible = new crofton.ViewResult(), frustum = new crofton.Frustum(), boxes = new crofton.Boxes(2);
+        world.add({ sphere: { center: [0, 0, -5], radius: 1 } });
+        world.update();
+        const tree = new crofton.Tree(boxes), wrong = [undefined, null, 7, {}, { handle: 16 }, new crofton.Triangulator(), new other.ViewResult(),
+            new other.Frustum(), new other.Boxes(1), new other.Shape({ sphere: { radius: 1 } }), new other.World(), new other.Region([])];
+        const mesh = new crofton.ClusteredMesh(SQUARE.positions, SQUARE.indices), foreign = new other.ClusteredMesh(SQUARE.positions, SQUARE.indices);
+        for (const thing of wrong) {
+            const calls = [() => tree.cull(thing, visible), () => tree.cull(frustum, thing), () => tree.move([0, 1], thing), () => new crofton.Tree(thing),
+                () => crofton.cullBoxes(thing, frustum, visible), () => crofton.cullBoxes(boxes, thing, visible), () => crofton.cullBoxes(boxes, frustum, thing),
+                () => crofton.classify(thing, frustum), () => crofton.classify(boxes, thing), () => world.view({ camera: {} }, thing),
+                () => world.attach(thing), () => world.hiddenBy(thing), () => visible.masks(thing), () => world.cast({ shape: thing }, {}),
+                () => world.overlap({ shape: thing }), () => new crofton.Shape({ rounded: { core: thing, radius: 1 } }),
+                () => new crofton.Shape({ compound: [{ shape: thing }] }), () => crofton.touches(thing, ball),
+                () => world.view({ camera: {}, picture: {}, receivers: { seen: thing } }, visible)];
+            for (const [i, call] of calls.entries()) assert.throws(call, refused('invalid argument'), `call ${i}`);
+        }
+        assert.throws(() => world.view({ volume: new other.Frustum() }, visible), (error) => refused('invalid argument')(error) && /another call of load/.test(error.message));
+        assert.throws(() => new crofton.DepthCuller().findVisible([{ mesh, toClip: place(0, -9) }, { mesh: foreign, toClip: place(0, -9) }], SMALL), refused('invalid argument', 1));
+        assert.throws(() => new crofton.Region([{ sphere: { center: [0, 0, 0], radius: 1 } }, { shape: wrong[9] }]), refused('invalid argument', 1));
+        for (const list of [undefined, null, 3, {}, 'abc', [null], [1], new Float32Array(2)]) {
+            assert.throws(() => new crofton.Region(list), refused('invalid argument'));
+            assert.throws(() => new crofton.DepthCuller().findVisible(list, SMALL), refused('invalid argument'));
+            assert.throws(() => new crofton.Shape({ compound: list }), refused('invalid argument'));
+        }
+        assert.throws(() => world.setOccluders({ kind: 'mesh', index: 0, generation: 0 }, [null]), refused('invalid argument', 0));
+        assert.throws(() => world.view(undefined, visible), refused('invalid argument'));
+        assert.throws(() => world.add(), refused('invalid argument'));
+        assert.throws(() => visible.trianglesOf(10n), refused('invalid argument'));
+        const gone = new Float64Array(3);
+        structuredClone(gone, { transfer: [gone.buffer] });
+        assert.throws(() => world.raycast(gone, [0, 0, -1]), (error) => refused('invalid argument')(error) && /detached/.test(error.message));
+        assert.throws(() => new crofton.Triangulator().triangulate(), refused('invalid argument'));
+        assert.deepEqual([...world.view({ camera: {} }, visible).ids], [0]);
+    });
 }
