@@ -264,17 +264,20 @@ void cut_terrain(std::uint32_t n) {
 
 }  // namespace
 
-// bench_depth [--target=NAME] [--repeats=N] [--threads=N] [SCENE…]
+// bench_depth [--target=NAME] [--repeats=N] [--threads=N] [--no-shadows] [SCENE…]
 int main(int argc, char** argv) {
     if (!take_target_option(argc, argv)) return 1;
     int repeats = 5;
     unsigned threads = 1;
+    bool shadows = true;
     std::vector<std::string> scenes;
     for (int i = 1; i < argc; ++i)
         if (std::strncmp(argv[i], "--repeats=", 10) == 0)
             repeats = std::atoi(argv[i] + 10);
         else if (std::strncmp(argv[i], "--threads=", 10) == 0)
             threads = static_cast<unsigned>(std::atoi(argv[i] + 10));
+        else if (std::strcmp(argv[i], "--no-shadows") == 0)
+            shadows = false;
         else
             scenes.emplace_back(argv[i]);
     std::printf("Instruction set: %s\n", target_in_use());
@@ -285,7 +288,7 @@ int main(int argc, char** argv) {
         if (std::filesystem::exists(forest)) scenes.push_back(forest);
     }
     ThreadPool pool(threads);
-    for (const std::string& scene : scenes) walk_street(scene, 0, {1280, 720}, pool, true, repeats);
+    for (const std::string& scene : scenes) walk_street(scene, 0, {1280, 720}, pool, shadows, repeats);
     if (!all) return 0;
     constexpr std::uint32_t kMany = 100'000;
     std::printf("the town with %u objects: ", kMany);

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <crofton/simd/mask_bits-inl.hpp>
 #include <cstdint>
 #include <limits>
 
@@ -122,9 +123,7 @@ class PatchDrawer {
             std::uint64_t bits = 0;
             for (std::size_t i = 0; i < Faces::kCount; i += hn::Lanes(d)) {
                 const auto flags = hn::And(hn::Load(d, faces_[block].flags + i), hn::Set(d, flag));
-                std::uint8_t mask[8] = {};
-                hn::StoreMaskBits(d, hn::Eq(flags, hn::Set(d, flag)), mask);
-                bits |= std::uint64_t{mask[0]} << i;
+                bits |= std::uint64_t{simd::HWY_NAMESPACE::mask_bits(d, hn::Eq(flags, hn::Set(d, flag)))} << i;
             }
             return bits << block * Faces::kCount;
         };
@@ -159,7 +158,7 @@ class PatchDrawer {
     }
 
     [[nodiscard]] HWY_INLINE Rasterizer rasterizer(std::uint32_t t) {
-        return {picture_.tiles, picture_.infinitely_far, faces(t), lane(t)};
+        return {picture_.tiles, band_, picture_.infinitely_far, faces(t), lane(t)};
     }
     [[nodiscard]] HWY_INLINE bool shows(std::uint32_t t) {
         Rasterizer raster = rasterizer(t);
@@ -172,7 +171,7 @@ class PatchDrawer {
     void close_surface() {
         if (surface_is_closed_) return;
         surface_is_closed_ = true;
-        PatchUnpacker(patch_).find_neighbors();
+        PatchUnpacker(patch_).find_neighbors(solid_);
         close_edges();
         exclude_corners();
         std::fill_n(partners_, patch_.triangle_count, kUnknown);
@@ -365,6 +364,7 @@ class PatchDrawer {
     bool surface_is_closed_ = false;
     ExcludedSamples excluded_;
     PatchVertices vertices_;
+    Band band_;
     alignas(64) float radius_[kMaxPatchVertices];
     std::uint8_t ends_[kMaxPatchVertices];
     Faces faces_[Cluster::kMaxTriangles / Faces::kCount];

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <crofton/simd/mask_bits-inl.hpp>
 #include <cstdint>
 #include <limits>
 
@@ -48,10 +49,16 @@ struct ExcludedSamples {
     std::uint64_t columns_ = 0, rows_ = 0;
 };
 
+// Of the eight rows at hand: the samples between the lines, and the plane's share.
+struct Band {
+    alignas(32) float low[kTile], high[kTile], ups[kTile];
+};
+
 class Rasterizer {
   public:
-    Rasterizer(const Tiles& tiles, float infinitely_far, const Faces& faces, std::uint32_t lane)
+    Rasterizer(const Tiles& tiles, Band& band, float infinitely_far, const Faces& faces, std::uint32_t lane)
         : tiles_(tiles),
+          band_(band),
           far_(infinitely_far),
           f_(faces),
           i_(lane),
@@ -69,15 +76,8 @@ class Rasterizer {
         Line lines[3];
         for (std::uint32_t k = 0; k < 3; ++k)
             lines[k] = {f_.per_row[k][i_], f_.at_y[k][i_], f_.ask_low[k][i_], f_.ask_high[k][i_]};
-        for (std::int32_t ty = y0_ / 8; ty <= y1_ / 8; ++ty) {
-            bool known = false;
-            const bool shown = any_low_tile(ty, [&](std::int32_t tx, std::size_t t) {
-                if (!known) find_band(ty, lines, 3);
-                known = true;
-                return meets_tile(tx) && shows_in_tile(tx, t);
-            });
-            if (shown) return true;
-        }
+        for (std::int32_t first = x0_ / 8; first <= x1_ / 8; first += static_cast<std::int32_t>(hn::Lanes(DF())))
+            if (shows_in_columns(first, lines)) return true;
         return false;
     }
 
@@ -123,28 +123,24 @@ class Rasterizer {
         return at_row + f_.across[i_] * (static_cast<float>(8 * tx) + 4.0f - f_.plane_x[i_]);
     }
 
-    // Calls use(tx, t) for tiles of the rectangle in which the triangle may be nearer than some pixel, until it returns
-    // true.
-    template <class Use>
-    HWY_INLINE bool any_low_tile(std::int32_t ty, const Use& use) {
+    // True if a sample may be the triangle's in the tiles from column `first` on, as many as there are lanes.
+    HWY_INLINE bool shows_in_columns(std::int32_t first, const Line (&lines)[3]) {
         const DF d;
-        const auto lanes = static_cast<std::int32_t>(hn::Lanes(d));
-        const VF up = hn::Set(d, plane_at_row(ty)), reach = hn::Set(d, spread_ + f_.above[i_]);
-        const VF across = hn::Set(d, f_.across[i_]), plane_x = hn::Set(d, f_.plane_x[i_]);
-        const std::size_t row = static_cast<std::size_t>(ty) * tiles_.columns;
-        const std::int32_t last = x1_ / 8;
-        for (std::int32_t first = x0_ / 8; first <= last; first += lanes) {
-            const std::size_t at = row + static_cast<std::size_t>(first);
-            const VF x = hn::Add(hn::Mul(steps_from(static_cast<float>(first)), hn::Set(d, 8.0f)), hn::Set(d, 4.0f));
-            const VF plane = hn::Add(up, hn::Mul(across, hn::Sub(x, plane_x)));
-            const VF most = hn::Min(hn::Add(plane, reach), hn::Set(d, f_.nearest[i_]));
+        const auto last = std::min(static_cast<std::int32_t>(hn::Lanes(d)) - 1, x1_ / 8 - first);
+        const std::uint32_t those = (2u << last) - 1;
+        const VF x = hn::Add(hn::Mul(steps_from(static_cast<float>(first)), hn::Set(d, 8.0f)), hn::Set(d, 4.0f));
+        const VF across = hn::Mul(hn::Set(d, f_.across[i_]), hn::Sub(x, hn::Set(d, f_.plane_x[i_])));
+        const VF reach = hn::Set(d, spread_ + f_.above[i_]), nearest = hn::Set(d, f_.nearest[i_]);
+        for (std::int32_t ty = y0_ / 8; ty <= y1_ / 8; ++ty) {
+            const std::size_t at = static_cast<std::size_t>(ty) * tiles_.columns + static_cast<std::size_t>(first);
+            const VF plane = hn::Add(hn::Set(d, plane_at_row(ty)), across);
+            const VF most = hn::Min(hn::Add(plane, reach), nearest);
             // The list is padded by a vector.
-            std::uint8_t hidden[8] = {};
-            hn::StoreMaskBits(d, hn::Gt(hn::LoadU(d, tiles_.least + at), most), hidden);
-            const std::uint32_t those = (2u << std::min(lanes - 1, last - first)) - 1;
-            for (std::uint32_t left = those & ~std::uint32_t{hidden[0]}; left != 0; left &= left - 1) {
+            std::uint32_t left = those & ~simd::HWY_NAMESPACE::mask_bits(d, hn::Gt(hn::LoadU(d, tiles_.least + at), most));
+            if (left != 0) find_band(ty, lines, 3);
+            for (; left != 0; left &= left - 1) {
                 const int i = std::countr_zero(left);
-                if (use(first + i, at + static_cast<std::size_t>(i))) return true;
+                if (meets_tile(first + i) && shows_in_tile(first + i, at + static_cast<std::size_t>(i))) return true;
             }
         }
         return false;
@@ -168,7 +164,6 @@ class Rasterizer {
         return inside;
     }
 
-    // Of eight rows: the samples between the lines, and the plane's share.
     HWY_INLINE void find_band(std::int32_t ty, const Line* lines, std::uint32_t count) {
         const DF d;
         const VF first = hn::Set(d, static_cast<float>(x0_) + 0.5f), last = hn::Set(d, static_cast<float>(x1_) + 0.5f);
@@ -183,10 +178,11 @@ class Rasterizer {
             }
             const auto within = hn::And(hn::Gt(y, bottom), hn::Lt(y, top));
             const VF infinity = hn::Set(d, std::numeric_limits<float>::infinity());
-            hn::Store(hn::IfThenElse(within, low, infinity), d, low_ + i);
-            hn::Store(hn::IfThenElse(within, high, hn::Neg(infinity)), d, high_ + i);
-            hn::Store(hn::Mul(hn::Set(d, f_.up[i_]), hn::Sub(y, hn::Set(d, f_.plane_y[i_]))), d, ups_ + i);
+            hn::Store(hn::IfThenElse(within, low, infinity), d, band_.low + i);
+            hn::Store(hn::IfThenElse(within, high, hn::Neg(infinity)), d, band_.high + i);
+            hn::Store(hn::Mul(hn::Set(d, f_.up[i_]), hn::Sub(y, hn::Set(d, f_.plane_y[i_]))), d, band_.ups + i);
         }
+        HWY_FENCE;  // Otherwise GCC permutes rows out of these vectors, by two instructions each: a load takes one.
     }
 
     static HWY_INLINE float least_of_rows(const float* rows) {
@@ -204,15 +200,15 @@ class Rasterizer {
 
     // Those with a sample between the lines.
     [[nodiscard]] HWY_INLINE Interval touched_tiles() const {
-        const float first = least_of_rows(low_), last = most_of_rows(high_);
+        const float first = least_of_rows(band_.low), last = most_of_rows(band_.high);
         if (!(first <= last)) return {1, 0};
         return {static_cast<std::int32_t>(first - 0.5f) / 8, static_cast<std::int32_t>(last - 0.5f) / 8};
     }
 
     // Those all of whose samples are between the lines: from 8 · first + 0.5 to 8 · last + 7.5.
     [[nodiscard]] HWY_INLINE Interval whole_tiles(const Interval& touched) const {
-        const float first = std::min(most_of_rows(low_), static_cast<float>(8 * touched.last + 16));
-        const float last = std::max(least_of_rows(high_), static_cast<float>(8 * touched.first));
+        const float first = std::min(most_of_rows(band_.low), static_cast<float>(8 * touched.last + 16));
+        const float last = std::max(least_of_rows(band_.high), static_cast<float>(8 * touched.first));
         const Interval whole{(static_cast<std::int32_t>(std::ceil(first - 0.5f)) + 7) / 8,
                              (static_cast<std::int32_t>(std::floor(last + 0.5f))) / 8 - 1};
         if (whole.first > whole.last) return {touched.last + 1, touched.last};
@@ -231,8 +227,8 @@ class Rasterizer {
             const VF depth = plane_at(x);
             for (std::size_t row = 0; row < kTile; ++row) {
                 const VF before = written ? hn::Max(hn::Load(d, pixels + row * kTile + i), floor) : floor;
-                const VF most = hn::Min(hn::Add(hn::Add(depth, hn::Set(d, ups_[row])), above), nearest);
-                const auto within = hn::And(hn::Ge(x, hn::Set(d, low_[row])), hn::Le(x, hn::Set(d, high_[row])));
+                const VF most = hn::Min(hn::Add(hn::Add(depth, hn::Set(d, band_.ups[row])), above), nearest);
+                const auto within = hn::And(hn::Ge(x, hn::Set(d, band_.low[row])), hn::Le(x, hn::Set(d, band_.high[row])));
                 shows = hn::Or(shows, hn::And(within, hn::Ge(most, before)));
             }
         }
@@ -308,7 +304,7 @@ class Rasterizer {
         const VF last = hn::Set(d, static_cast<float>(8 * tx) + 7.5f);
         auto meets = hn::FirstN(d, 0);
         for (std::size_t i = 0; i < kTile; i += hn::Lanes(d))
-            meets = hn::Or(meets, hn::And(hn::Le(hn::Load(d, low_ + i), last), hn::Ge(hn::Load(d, high_ + i), first)));
+            meets = hn::Or(meets, hn::And(hn::Le(hn::Load(d, band_.low + i), last), hn::Ge(hn::Load(d, band_.high + i), first)));
         return !hn::AllFalse(d, meets);
     }
 
@@ -331,9 +327,9 @@ class Rasterizer {
             for (std::size_t row = 0; row < kTile; ++row) {
                 float* const pixel = pixels + row * kTile + i;
                 const VF before = kFirst ? hn::Set(d, kNothing) : hn::Load(d, pixel);
-                const VF lower = hn::Add(depth, hn::Set(d, ups_[row]));
-                const auto within = hn::And(hn::Ge(x, hn::Set(d, low_[row])), hn::Le(x, hn::Set(d, high_[row])));
-                const VF after = hn::IfThenElse(within, hn::Max(before, lower), before);
+                const auto within = hn::And(hn::Ge(x, hn::Set(d, band_.low[row])), hn::Le(x, hn::Set(d, band_.high[row])));
+                const VF outside = hn::IfThenZeroElse(within, hn::Set(d, kNothing));
+                const VF after = hn::Max(hn::Add(hn::Add(depth, hn::Set(d, band_.ups[row])), outside), before);
                 hn::Store(after, d, pixel);
                 least = hn::Min(least, after);
             }
@@ -342,6 +338,7 @@ class Rasterizer {
     }
 
     const Tiles& tiles_;
+    Band& band_;
     float far_;
     const Faces& f_;
     std::uint32_t i_;
@@ -349,7 +346,6 @@ class Rasterizer {
     float at_row_ = 0.0f;  // the plane in the middle of the rows at hand, but for the column's share
     bool spares_ = false;  // a sample of the rows at hand is excluded
     float spread_;         // of the plane over half a tile
-    alignas(32) float low_[kTile], high_[kTile], ups_[kTile];  // of the rows at hand
 };
 
 }  // namespace crofton::depth::HWY_NAMESPACE

@@ -4,6 +4,7 @@
 #include <hwy/highway.h>
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 
 #include "adjacency.hpp"
@@ -39,8 +40,9 @@ class PatchUnpacker {
         for (std::uint32_t v = count; v < padded(count); ++v) set_vertex(v, p_.vertex(v - 1));
     }
 
-    // Two triangles are neighbours where just these two share the edge, in opposite directions.
-    HWY_INLINE void find_neighbors() {
+    // Two triangles are neighbours where just these two share the edge, in opposite directions. Others than `those` may
+    // get any neighbours.
+    HWY_INLINE void find_neighbors(std::uint64_t those) {
         if (p_.has_twins) return find_neighbors_of_any();
         const DI d;
         const VI vertices = hn::Set(d, static_cast<std::int32_t>(p_.vertex_count));
@@ -52,10 +54,13 @@ class PatchUnpacker {
             hn::StoreInterleaved4(edge(a, b), edge(b, c), edge(c, a), none, d, p_.edges + 4 * t);
             hn::StoreInterleaved4(edge(b, a), edge(c, b), edge(a, c), none, d, opposite + 4 * t);
         }
+        for (std::uint64_t left = those; left != 0; left &= left - 1) {
+            const auto t = static_cast<std::uint32_t>(std::countr_zero(left));
+            for (std::uint32_t h = 4 * t; h < 4 * t + 3; ++h) p_.owners[p_.edges[h]] = static_cast<std::uint8_t>(h);
+        }
         const std::uint32_t end = 4 * p_.triangle_count;
-        for (std::uint32_t t = 0; t < end; t += 4)
-            for (std::uint32_t h = t; h < t + 3; ++h) p_.owners[p_.edges[h]] = static_cast<std::uint8_t>(h);
-        for (std::uint32_t t = 0; t < p_.triangle_count; ++t)
+        for (std::uint64_t left = those; left != 0; left &= left - 1) {
+            const auto t = static_cast<std::uint32_t>(std::countr_zero(left));
             for (std::uint32_t k = 0; k < 3; ++k) {
                 const std::int32_t across = opposite[4 * t + k];
                 const std::uint32_t owner = p_.owners[across];
@@ -63,6 +68,7 @@ class PatchUnpacker {
                 p_.blocks[t / kLanes].neighbors[k][t % kLanes] =
                     static_cast<std::uint8_t>(owner | (found ? 0u : std::uint32_t{kNoNeighbor}));
             }
+        }
     }
 
   private:
