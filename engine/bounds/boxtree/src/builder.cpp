@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::uint32_t kClusterRow = kWidth * kWidth;  // items of a cluster, times the leaves of a node
 constexpr double kCells = 1u << 20;
+constexpr std::size_t kWorkOfUnit = 16;  // the unit of budgets in the splitter's
 constexpr std::size_t kCrowd = 256;  // items; a cell with more of them is sorted by smaller cells
 
 // Moves ten bits to every third place.
@@ -126,8 +127,10 @@ std::size_t Builder::prepare_on(std::size_t budget, std::span<const Obb> boxes, 
             return gather_all(budget);
         case Phase::label:
             return label_items(budget);
-        default:
+        case Phase::bound:
             return bound_clusters(budget, boxes);
+        default:
+            return place_clusters(budget);
     }
 }
 
@@ -139,7 +142,7 @@ std::size_t Builder::sort_pass(std::size_t budget) {
         for (std::uint32_t& count : places) sum += std::exchange(count, sum);
     }
     const unsigned shift = kItemBits + pass_ * kDigitBits;
-    const std::size_t end = std::min(keys_.size(), next_ + budget), spent = end - next_;
+    const std::size_t end = std::min(keys_.size(), next_ + budget + budget / 2), spent = (end - next_) * 2 / 3 + 1;
     for (; next_ < end; ++next_) keys_next_[places[keys_[next_] >> shift & (places.size() - 1)]++] = keys_[next_];
     if (next_ < keys_.size()) return spent;
     next_ = 0;
@@ -180,7 +183,7 @@ void Builder::sort_crowd(std::span<std::uint64_t> keys, std::span<const Obb> box
 
 // Cuts the sorted items into clusters: first those at rest, then those that move.
 std::size_t Builder::gather_items(std::size_t budget, std::span<const Obb> boxes, const Movers& movers) {
-    const std::size_t end = std::min(keys_.size(), next_ + 2 * budget), spent = (end - next_ + 1) / 2;
+    const std::size_t end = std::min(keys_.size(), next_ + budget), spent = end - next_;
     for (; next_ < end; ++next_) {
         const ItemId item = item_of(keys_[next_]);
         (movers.contain(movers.context, item) ? moving_ : result_.order).push_back(item);
@@ -217,18 +220,16 @@ void Builder::start_clusters() {
 
 // Notes each item's cluster, so that boxes can be read in the order in which they are stored.
 std::size_t Builder::label_items(std::size_t budget) {
-    const std::size_t size = std::size_t{kClusterRow} * result_.node_leaves, first = next_,
-                      last = std::min(clusters_.size(), first + budget * 2 / size + 1);
-    for (; next_ < last; ++next_) {
-        const Range range = cluster_ranges_[next_];
-        for (std::uint32_t i = range.begin; i < range.end; ++i)
-            cluster_of_[result_.order[i]] = static_cast<std::uint32_t>(next_);
+    const std::size_t all = result_.order.size(), end = std::min(all, next_ + budget), spent = end - next_;
+    for (; next_ < end; ++next_) {
+        while (next_ == cluster_ranges_[labels_].end) ++labels_;
+        cluster_of_[result_.order[next_]] = labels_;
     }
-    if (next_ == clusters_.size()) {
+    if (next_ == all) {
         next_ = 0;
         phase_ = Phase::bound;
     }
-    return (last - first) * size / 2;
+    return spent;
 }
 
 std::size_t Builder::bound_clusters(std::size_t budget, std::span<const Obb> boxes) {
@@ -240,44 +241,51 @@ std::size_t Builder::bound_clusters(std::size_t budget, std::span<const Obb> box
             cluster.include(build_item(0, boxes[next_], middle_));
             cluster.set_id(id);
         }
-    if (next_ == cluster_of_.size()) place_clusters();
+    if (next_ == cluster_of_.size()) phase_ = Phase::place;
     return spent;
 }
 
 // Makes the nodes above the clusters by splitting from the top. Then gives the clusters places in the order of a walk.
-void Builder::place_clusters() {
-    struct Task {
-        Range range;  // of clusters
-        NodeId parent;
-        std::uint32_t lane;
-        unsigned depth;
-    };
-    Splitter splitter;
-    splitter.start(clusters_);
-    Vector<Task> tasks;
-    tasks.push_back({{0, static_cast<std::uint32_t>(clusters_.size())}, kNone, 0, 0});
-    while (!tasks.empty()) {
-        const Task task = tasks.back();
-        tasks.pop_back();
+std::size_t Builder::place_clusters(std::size_t budget) {
+    Above& above = above_;
+    std::size_t work = std::min(budget, ~std::size_t{0} / kWorkOfUnit) * kWorkOfUnit;
+    if (above.tasks.empty() && above.divided == kNone) {
+        above.splitter.begin(clusters_);
+        above.tasks.push_back({{0, static_cast<std::uint32_t>(clusters_.size())}, kNone, 0, 0});
+    }
+    if (!above.splitter.sort_on(work)) return budget;
+    while (!above.tasks.empty() || above.divided != kNone) {
+        if (above.divided != kNone) {
+            if (!above.splitter.divide_on(cost_, work)) return budget;
+            const Children& children = above.splitter.children();
+            result_.nodes[above.divided].count = children.count;
+            for (std::uint32_t lane = children.count; lane-- > 0;)
+                above.tasks.push_back({children.ranges[lane], above.divided, lane, above.depth + 1});
+            above.divided = kNone;
+        }
+        if (work == 0) return budget;
+        work -= std::min(work, kWorkOfUnit);
+        const Above::Task task = above.tasks.back();
+        above.tasks.pop_back();
         if (task.range.size() == 1) {
-            Subtree subtree(cluster_ranges_[splitter.order()[task.range.begin]], result_.node_leaves);
+            Subtree subtree(cluster_ranges_[above.splitter.order()[task.range.begin]], result_.node_leaves);
             subtree.parent = task.parent;
             subtree.lane_in_parent = task.lane;
             result_.height = std::max(result_.height, task.depth + (subtree.is_leaf() ? 0 : subtree.height));
             subtrees_.push_back(subtree);
             continue;
         }
-        const auto node = static_cast<NodeId>(result_.nodes.size());
+        above.divided = static_cast<NodeId>(result_.nodes.size());
+        above.depth = task.depth;
         Topology::NodeRecord& record = result_.nodes.emplace_back();
         record.parent = task.parent;
         record.lane_in_parent = task.lane;
-        if (task.parent != kNone) result_.nodes[task.parent].child[task.lane] = node;
-        const Children children = splitter.divide(task.range, 1, cost_);
-        record.count = children.count;
-        for (std::uint32_t lane = record.count; lane-- > 0;)
-            tasks.push_back({children.ranges[lane], node, lane, task.depth + 1});
+        if (task.parent != kNone) result_.nodes[task.parent].child[task.lane] = above.divided;
+        above.splitter.begin_division(task.range, 1);
     }
+    above_ = {};
     place_subtrees();
+    return budget - work / kWorkOfUnit;
 }
 
 // Splits all items from the root, without clusters.

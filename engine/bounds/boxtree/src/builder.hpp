@@ -67,7 +67,21 @@ class Builder {
     static constexpr unsigned kItemBits = 30, kDigitBits = 12, kPasses = 3, kFineBits = 10;
     static constexpr std::size_t kDigits = std::size_t{1} << kDigitBits;
 
-    enum class Phase : std::uint8_t { sort, crowding, gather, append, label, bound, gather_all, ready };
+    enum class Phase : std::uint8_t { sort, crowding, gather, append, label, bound, place, gather_all, ready };
+
+    // The nodes above the clusters, while they are made.
+    struct Above {
+        struct Task {
+            Range range;  // of clusters
+            NodeId parent;
+            std::uint32_t lane;
+            unsigned depth;
+        };
+        Splitter splitter;
+        Vector<Task> tasks;
+        NodeId divided = kNone;  // whose clusters are being divided
+        unsigned depth = 0;      // of that
+    };
 
     [[nodiscard]] static ItemId item_of(std::uint64_t key);
     [[nodiscard]] std::uint64_t key_of(ItemId id, const Obb& box) const;
@@ -86,7 +100,7 @@ class Builder {
     void start_clusters();
     std::size_t label_items(std::size_t budget);
     std::size_t bound_clusters(std::size_t budget, std::span<const Obb> boxes);
-    void place_clusters();
+    std::size_t place_clusters(std::size_t budget);
     void place_all();
     void place_subtrees();
 
@@ -105,8 +119,10 @@ class Builder {
     Vector<Range> cluster_ranges_;
     Vector<std::uint32_t> cluster_of_;  // by item; kNone where there is none
     Vector<BuildItem> clusters_;
+    Above above_;
     Vector<Subtree> subtrees_;
     LeafId leaf_count_ = 0;
+    std::uint32_t labels_ = 0;  // the cluster of the item that is labelled next
     std::size_t next_ = 0;
     SubtreeBuilder subtree_builder_;
     bool building_ = false;

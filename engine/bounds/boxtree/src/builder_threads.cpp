@@ -28,7 +28,7 @@ void Builder::prepare_all(std::span<const Obb> boxes, const Movers& movers, Exec
     if (phase_ == Phase::ready) return;
     label_items(executor);
     bound_clusters(boxes, executor);
-    place_clusters();
+    (void)place_clusters(~std::size_t{0});
 }
 
 // A radix sort, the least significant digit first. Each part of the keys knows how many of each digit the parts before

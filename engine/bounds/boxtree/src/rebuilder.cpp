@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kPartsOfUnit = 2;
 constexpr std::size_t kItemAdded = 3;     // to a builder
 constexpr std::size_t kSlotsPerPart = 8;  // cleared
-constexpr std::size_t kNodeLinked = 8, kLeafFilled = 80, kNodeBounded = 128;
+constexpr std::size_t kNodeLinked = 8, kLeafFilled = 80, kNodeBounded = 160;
 constexpr std::size_t kWordsPerPart = 16;
 // Where at least one item in so many has been inserted since the rebuild before, nodes leave room for more leaves: a
 // full leaf that gets an item is split, and where its node is full, that is split too, whose bounds views pay for.
@@ -26,7 +26,8 @@ constexpr std::size_t kManyPlaced = 32;
 // Clusters then keep the steps short.
 constexpr BuildGrain kWithRoom{4096, 14};
 constexpr std::size_t kMostBudget = ~std::size_t{0} / 128;  // so that no multiple of it, added to an index, overflows
-constexpr std::size_t kItemMoved = 8, kItemPlaced = 160;    // of an item that is brought up to date
+// Of an item that is brought up to date; placing it may split leaves and nodes.
+constexpr std::size_t kItemMoved = 48, kItemPlaced = 160, kSplit = 160;
 
 std::size_t steps(std::size_t budget, std::size_t cost) {
     return std::max<std::size_t>(budget / cost, 1);
@@ -211,7 +212,9 @@ std::size_t Rebuilder::apply_changes(const Structure& current, std::size_t budge
             const bool present = current.contains(item), placed = (placed_word & bit) != 0;
             placed_word &= ~bit;
             spent += present && (placed || !next.contains(item)) ? kItemPlaced : kItemMoved;
+            const std::size_t before = next.nodes().size() + next.leaves().size();
             sync_item(item, present, placed);
+            spent += kSplit * (next.nodes().size() + next.leaves().size() - before);
             ++last_step_.items_synced;
             --work_->changed_count;
         }
