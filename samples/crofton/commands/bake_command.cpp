@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "assets/baked_source.hpp"
+#include "assets/print.hpp"
 #include "assets/scene_source.hpp"
 #include "bake_regions.hpp"
 #include "commands.hpp"
@@ -73,19 +74,20 @@ int show(const BakeOptions& options, const char* verb, const Times& times, const
     }
     const ClusterFigures clusters = cluster_figures(baked);
     if (options.json != "-") {
-        std::printf(
-            "%s: %s in %.1f ms (%.1f ms of CPU); %zu instances of %zu meshes (%llu triangles, %llu triangulated "
-            "polygons), %zu nodes, "
-            "a tree of height %u, %llu occluders on %zu nodes, %llu clusters (%.1f MB), %.1f MB in all",
-            path.c_str(), verb, times.milliseconds, times.cpu_milliseconds, baked.instances().size(),
-            baked.mesh_count(), static_cast<unsigned long long>(triangles), static_cast<unsigned long long>(polygons),
-            baked.nodes().size(), baked.tree().structure().height(),
-            static_cast<unsigned long long>(occluder_count(baked)),
-            baked.occluders() ? baked.occluders()->nodes.size() : 0, static_cast<unsigned long long>(clusters.count),
-            static_cast<double>(clusters.bytes) / 1e6, static_cast<double>(bytes) / 1e6);
+        print_to(stdout,
+                 "%s: %s in %.1f ms (%.1f ms of CPU); %zu instances of %zu meshes (%llu triangles, %llu triangulated "
+                 "polygons), %zu nodes, "
+                 "a tree of height %u, %llu occluders on %zu nodes, %llu clusters (%.1f MB), %.1f MB in all",
+                 printable(path).c_str(), verb, times.milliseconds, times.cpu_milliseconds, baked.instances().size(),
+                 baked.mesh_count(), static_cast<unsigned long long>(triangles),
+                 static_cast<unsigned long long>(polygons), baked.nodes().size(), baked.tree().structure().height(),
+                 static_cast<unsigned long long>(occluder_count(baked)),
+                 baked.occluders() ? baked.occluders()->nodes.size() : 0,
+                 static_cast<unsigned long long>(clusters.count), static_cast<double>(clusters.bytes) / 1e6,
+                 static_cast<double>(bytes) / 1e6);
         if (times.occluder_milliseconds > 0.0)
-            std::printf("; before that the occluders were found in %.1f ms", times.occluder_milliseconds);
-        std::printf("\n");
+            print_to(stdout, "; before that the occluders were found in %.1f ms", times.occluder_milliseconds);
+        print_to(stdout, "\n");
     }
     if (options.json.empty()) return kSuccess;
     const auto written = write_json(options.json, {{"file", path},

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "assets/baked_source.hpp"
+#include "assets/print.hpp"
 #include "commands.hpp"
 #include "for_each_region.hpp"
 #include "interrupt.hpp"
@@ -82,7 +83,8 @@ class RegionWriter {
             earlier = fail(ErrorCode::invalid_argument, kNoItem,
                            "is of another scene, or of other options; remove it to start again");
         if (!earlier && bake_.state.empty()) {
-            std::fprintf(stderr, "crofton: %s: %s: starting again\n", path_.c_str(), earlier.error().message.c_str());
+            print_to(stderr, "crofton: %s: %s: starting again\n", printable(path_).c_str(),
+                     printable(earlier.error().message).c_str());
             return {};
         }
         if (!earlier) return fail(earlier.error().code, kNoItem, path_ + ": " + earlier.error().message);
@@ -91,7 +93,7 @@ class RegionWriter {
             if (whole)
                 state_.done.emplace(place, done);
             else
-                std::fprintf(stderr, "crofton: %s: baked again\n", whole.error().message.c_str());
+                print_to(stderr, "crofton: %s: baked again\n", printable(whole.error().message).c_str());
         }
         return {};
     }
@@ -166,12 +168,12 @@ int show_written(const RegionBake& bake, const RegionWriter& writer, std::size_t
                  const Stopwatch& watch) {
     const Figures figures = figures_of(writer.files());
     if (bake.json != "-") {
-        std::printf("%s: baked %zu regions of %llu instances in %.1f ms (%.1f ms of CPU), %.1f MB in all",
-                    bake.folder.c_str(), figures.regions, static_cast<unsigned long long>(figures.objects),
-                    watch.milliseconds(), watch.cpu_milliseconds(), static_cast<double>(figures.bytes) / 1e6);
-        if (baked < figures.regions) std::printf("; %zu of them were done before", figures.regions - baked);
-        if (!writer.is_whole()) std::printf("; a part of %zu regions", of);
-        std::printf("\n");
+        print_to(stdout, "%s: baked %zu regions of %llu instances in %.1f ms (%.1f ms of CPU), %.1f MB in all",
+                 printable(bake.folder).c_str(), figures.regions, static_cast<unsigned long long>(figures.objects),
+                 watch.milliseconds(), watch.cpu_milliseconds(), static_cast<double>(figures.bytes) / 1e6);
+        if (baked < figures.regions) print_to(stdout, "; %zu of them were done before", figures.regions - baked);
+        if (!writer.is_whole()) print_to(stdout, "; a part of %zu regions", of);
+        print_to(stdout, "\n");
     }
     if (bake.json.empty()) return kSuccess;
     const auto told = write_json(bake.json, {{"folder", bake.folder},
@@ -218,8 +220,8 @@ Result<int> write_all(const assets::SceneSource& source, const RegionBake& bake,
     if (!written) return written.error();
     if (!saved) return saved.error();
     if (baked < places.size()) {
-        std::fprintf(stderr, "crofton: interrupted after %zu of %zu regions: the next run continues from here\n",
-                     baked.load(), places.size());
+        print_to(stderr, "crofton: interrupted after %zu of %zu regions: the next run continues from here\n",
+                 baked.load(), places.size());
         return kInterrupted;
     }
     if (!is_shard)
@@ -264,11 +266,12 @@ int check_regions(const std::string& folder, std::uint64_t largest_file, const s
     const Figures figures = figures_of(*index);
     const double slowest = milliseconds.empty() ? 0.0 : *std::max_element(milliseconds.begin(), milliseconds.end());
     if (json != "-")
-        std::printf(
+        print_to(
+            stdout,
             "%s: opened %zu regions of %llu instances in %.1f ms, the slowest in %.1f ms, and attached each in %.3f ms "
             "at most, %.1f MB in all\n",
-            folder.c_str(), figures.regions, static_cast<unsigned long long>(world.object_count()), opening, slowest,
-            attaching, static_cast<double>(figures.bytes) / 1e6);
+            printable(folder).c_str(), figures.regions, static_cast<unsigned long long>(world.object_count()), opening,
+            slowest, attaching, static_cast<double>(figures.bytes) / 1e6);
     if (json.empty()) return kSuccess;
     const auto told = write_json(json, {{"folder", folder},
                                         {"regions", figures.regions},

@@ -13,6 +13,7 @@
 #include <glm/geometric.hpp>
 #include <memory>
 
+#include "assets/print.hpp"
 #include "commands.hpp"
 #include "criterion.hpp"
 #include "json/json.hpp"
@@ -154,10 +155,10 @@ void print(const MeshBounds& mesh, bool only_best) {
     for (std::size_t i = 0; i < mesh.candidates.size(); ++i) {
         if (only_best && i != mesh.best) continue;
         const Candidate& c = mesh.candidates[i];
-        std::printf("%-24s %9zu %-13s %14.7g %9.2f%% %9.2f%% %8zu %9.1f %12.2f%s\n",
-                    mesh.file.substr(mesh.file.find_last_of('/') + 1).c_str(), mesh.triangles, c.kind.c_str(), c.value,
-                    100.0 * (c.value / mesh.hull - 1.0), 100.0 * (1.0 - c.lower_bound / c.value), c.passed, c.test_ns,
-                    c.cost_ns, i == mesh.best ? "  best" : "");
+        print_to(stdout, "%-24s %9zu %-13s %14.7g %9.2f%% %9.2f%% %8zu %9.1f %12.2f%s\n",
+                 printable(mesh.file.substr(mesh.file.find_last_of('/') + 1)).c_str(), mesh.triangles, c.kind.c_str(),
+                 c.value, 100.0 * (c.value / mesh.hull - 1.0), 100.0 * (1.0 - c.lower_bound / c.value), c.passed,
+                 c.test_ns, c.cost_ns, i == mesh.best ? "  best" : "");
     }
 }
 
@@ -190,7 +191,8 @@ Result<int> run_bounds(BoundsRequest& run) {
     run.directions = std::move(*directions);
     Json list = Json::array();
     if (run.json_path != "-")
-        std::printf(
+        print_to(
+            stdout,
             "criterion %s; %zu views from within %g times the mesh's radius; %g ns a triangle; cost = (N_v C_v + N_p "
             "C_p) "
             "/ N_v\n%-24s %9s %-13s %14s %10s %10s %8s %9s %12s\n",

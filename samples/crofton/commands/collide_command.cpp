@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 
+#include "assets/print.hpp"
 #include "collide_shapes.hpp"
 #include "commands.hpp"
 #include "json/json.hpp"
@@ -108,8 +109,8 @@ Result<mesh::MeshTree> tree_of(const std::string& path, const ReadOptions& optio
     milliseconds += milliseconds_since(start);
     if (!tree) return fail(tree.error().code, tree.error().item, path + ": " + tree.error().message);
     if (!tree->rejected().empty())
-        std::fprintf(stderr, "crofton: %s: %zu bad triangles left out, the first is %u\n", path.c_str(),
-                     tree->rejected().size(), tree->rejected()[0]);
+        print_to(stderr, "crofton: %s: %zu bad triangles left out, the first is %u\n", printable(path).c_str(),
+                 tree->rejected().size(), tree->rejected()[0]);
     return tree;
 }
 
@@ -195,7 +196,7 @@ int run_shapes(const CollideRequest& request, const RigidTransform& pose) {
                                                 {"max_overshoot", file->hull->max_overshoot()},
                                                 {"volume", file->hull->mass().volume}});
     }
-    if (request.json_path != "-") std::printf("%s\n", answer.sentence.c_str());
+    if (request.json_path != "-") print_to(stdout, "%s\n", printable(answer.sentence).c_str());
     if (request.json_path.empty()) return kSuccess;
     if (const auto written = write_json(request.json_path, answer.document); !written)
         return report_error("", written.error());
@@ -217,13 +218,13 @@ int run_collide(const CollideRequest& request) {
     if (answer.hit && request.mode == "all")
         answer.depth = mesh::separating_motion(*a, *b, *pose, answer.contacts).depth;
     if (request.json_path != "-") {
-        std::printf("%s", answer.hit ? "hit" : "no hit");
+        print_to(stdout, "%s", answer.hit ? "hit" : "no hit");
         if (answer.contained != mesh::Containment::none || request.mode == "contain")
-            std::printf(", %s", sentence_of(answer.contained));
+            print_to(stdout, ", %s", sentence_of(answer.contained));
         if (request.mode == "all")
-            std::printf(", %zu pairs of triangles, depth %.6g", answer.contacts.size(), answer.depth);
-        if (request.mode == "distance") std::printf(", distance %.9g", answer.distance);
-        std::printf("  (build %.3f ms, query %.3f ms)\n", build, query);
+            print_to(stdout, ", %zu pairs of triangles, depth %.6g", answer.contacts.size(), answer.depth);
+        if (request.mode == "distance") print_to(stdout, ", distance %.9g", answer.distance);
+        print_to(stdout, "  (build %.3f ms, query %.3f ms)\n", build, query);
     }
     if (request.json_path.empty()) return kSuccess;
     Json document = document_of(answer);

@@ -9,12 +9,12 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <iostream>
 #include <map>
 #include <sstream>
 #include <system_error>
 
 #include "assets/file.hpp"
+#include "assets/print.hpp"
 #include "interrupt.hpp"
 
 namespace crofton::cli {
@@ -397,14 +397,14 @@ int CommandLine::run(int argc, char** argv) {
         app_->parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() != 0) {
-            std::cerr << usage_error(*app_, error, arguments);
+            print_text_to(stderr, usage_error(*app_, error, arguments));
             return kBadInput;
         }
         status_ = app_->exit(error);  // --help
     }
     // Output may still be in the buffer; a full disk shows only when it is flushed.
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status_;
-    std::fprintf(stderr, "crofton: standard output: cannot write: %s\n", std::strerror(errno));
+    print_to(stderr, "crofton: standard output: cannot write: %s\n", std::strerror(errno));
     return kBadInput;
 }
 

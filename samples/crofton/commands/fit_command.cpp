@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "assets/print.hpp"
 #include "commands.hpp"
 #include "criterion.hpp"
 #include "fit_output.hpp"
@@ -117,7 +118,7 @@ int run_fit(const FitRequest& request) {
     finish_what_there_is();
     if (meshes.empty())
         return report_error("", {ErrorCode::cancelled, kNoItem, "interrupted before the first file was done"});
-    if (request.json_path != "-" && request.svg_path != "-") std::fputs(fit_text(meshes).c_str(), stdout);
+    if (request.json_path != "-" && request.svg_path != "-") print_text_to(stdout, fit_text(meshes));
     if (!request.json_path.empty())
         if (const auto written = write_json(request.json_path, fit_json(meshes, request.quality)); !written)
             return report_error("", written.error());
@@ -126,8 +127,8 @@ int run_fit(const FitRequest& request) {
             return report_error("", written.error());
     if (!interrupted()) return kSuccess;
     if (request.files.size() > 1)
-        std::fprintf(stderr, "crofton: interrupted after %zu of %zu files, which are written\n", meshes.size(),
-                     request.files.size());
+        print_to(stderr, "crofton: interrupted after %zu of %zu files, which are written\n", meshes.size(),
+                 request.files.size());
     else
         std::fputs("crofton: interrupted: the box is the best one so far, and its gap says how good it is\n", stderr);
     return kInterrupted;

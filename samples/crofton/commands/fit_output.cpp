@@ -3,28 +3,15 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdarg>
 #include <cstdio>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
+#include "assets/print.hpp"
 #include "json/json.hpp"
 
 namespace crofton::cli {
 namespace {
-
-#if defined(__GNUC__)
-__attribute__((format(printf, 2, 3)))
-#endif
-void
-append(std::string& text, const char* format, ...) {
-    char line[512];
-    va_list arguments;
-    va_start(arguments, format);
-    std::vsnprintf(line, sizeof line, format, arguments);
-    va_end(arguments);
-    text += line;
-}
 
 Json optional_number(const std::optional<double>& value) {
     return value ? Json(*value) : Json(nullptr);
@@ -53,19 +40,6 @@ Json box_json(const FittedBox& fitted, double hull_milliseconds) {
              {{"hull", hull_milliseconds},
               {"search", fitted.milliseconds},
               {"total", hull_milliseconds + fitted.milliseconds}}}};
-}
-
-std::string escaped(const std::string& text) {
-    std::string result;
-    for (const char c : text) {
-        if (c == '<')
-            result += "&lt;";
-        else if (c == '&')
-            result += "&amp;";
-        else
-            result += c;
-    }
-    return result;
 }
 
 std::string file_name(const std::string& path) {
@@ -100,35 +74,37 @@ std::string fit_text(const std::vector<FittedMesh>& meshes) {
         const FittedMesh& mesh = meshes[0];
         const FittedBox& fitted = mesh.chosen;
         const Obb& box = fitted.box;
-        append(text, "%s: %zu vertices, %zu on the hull\n", mesh.file.c_str(), mesh.vertices, mesh.hull_vertices);
-        append(text, "  center        %.9g %.9g %.9g\n", box.center.x, box.center.y, box.center.z);
+        text += formatted("%s: %zu vertices, %zu on the hull\n", printable(mesh.file).c_str(), mesh.vertices,
+                          mesh.hull_vertices);
+        text += formatted("  center        %.9g %.9g %.9g\n", box.center.x, box.center.y, box.center.z);
         for (int k = 0; k < 3; ++k)
-            append(text, "  axis %d        %.9g %.9g %.9g   half extent %.9g\n", k, static_cast<double>(box.axes[k].x),
-                   static_cast<double>(box.axes[k].y), static_cast<double>(box.axes[k].z),
-                   static_cast<double>(box.half_extents[k]));
-        append(text, "  volume %.9g   area %.9g   edge sum %.9g\n", volume(box), surface_area(box), edge_sum(box));
-        append(text, "  %s: value %.9g", fitted.criterion.c_str(), fitted.value);
+            text += formatted("  axis %d        %.9g %.9g %.9g   half extent %.9g\n", k,
+                              static_cast<double>(box.axes[k].x), static_cast<double>(box.axes[k].y),
+                              static_cast<double>(box.axes[k].z), static_cast<double>(box.half_extents[k]));
+        text += formatted("  volume %.9g   area %.9g   edge sum %.9g\n", volume(box), surface_area(box), edge_sum(box));
+        text += formatted("  %s: value %.9g", fitted.criterion.c_str(), fitted.value);
         if (fitted.lower_bound)
-            append(text, ", proved lower bound %.9g (gap %.2g, of which %.2g is the rounding of the box to float)",
-                   *fitted.lower_bound, *fitted.gap, *fitted.rounding);
-        append(text, "\n  %.3f ms; the hull, for its count of vertices only, %.3f ms\n", fitted.milliseconds,
-               mesh.hull_milliseconds);
+            text += formatted(", proved lower bound %.9g (gap %.2g, of which %.2g is the rounding of the box to float)",
+                              *fitted.lower_bound, *fitted.gap, *fitted.rounding);
+        text += formatted("\n  %.3f ms; the hull, for its count of vertices only, %.3f ms\n", fitted.milliseconds,
+                          mesh.hull_milliseconds);
         return text;
     }
     std::size_t width = 8;
     for (const FittedMesh& mesh : meshes) width = std::max(width, file_name(mesh.file).size());
-    append(text, "%-*s %9s %7s  %-12s %14s %14s %14s %14s %9s %9s\n", static_cast<int>(width), "mesh", "vertices",
-           "hull", "criterion", "volume", "area", "edge sum", "value", "gap", "ms");
+    text += formatted("%-*s %9s %7s  %-12s %14s %14s %14s %14s %9s %9s\n", static_cast<int>(width), "mesh", "vertices",
+                      "hull", "criterion", "volume", "area", "edge sum", "value", "gap", "ms");
     for (const FittedMesh& mesh : meshes) {
         const auto row = [&](const FittedBox& fitted) {
-            append(text, "%-*s %9zu %7zu  %-12s %14.9g %14.9g %14.9g %14.9g ", static_cast<int>(width),
-                   file_name(mesh.file).c_str(), mesh.vertices, mesh.hull_vertices, fitted.criterion.c_str(),
-                   volume(fitted.box), surface_area(fitted.box), edge_sum(fitted.box), fitted.value);
+            text += formatted("%-*s %9zu %7zu  %-12s %14.9g %14.9g %14.9g %14.9g ", static_cast<int>(width),
+                              printable(file_name(mesh.file)).c_str(), mesh.vertices, mesh.hull_vertices,
+                              fitted.criterion.c_str(), volume(fitted.box), surface_area(fitted.box),
+                              edge_sum(fitted.box), fitted.value);
             if (fitted.gap)
-                append(text, "%9.1e ", *fitted.gap);
+                text += formatted("%9.1e ", *fitted.gap);
             else
-                append(text, "%9s ", "-");
-            append(text, "%9.3f\n", fitted.milliseconds);
+                text += formatted("%9s ", "-");
+            text += formatted("%9.3f\n", fitted.milliseconds);
         };
         for (const FittedBox& other : mesh.others) row(other);
         const bool listed = std::any_of(mesh.others.begin(), mesh.others.end(), [&](const FittedBox& other) {
@@ -175,7 +151,7 @@ class Panel {
 
     void line(const glm::dvec3& a, const glm::dvec3& b, const char* style) {
         const glm::dvec2 p = at(a), q = at(b);
-        append(text_, "<line x1=\"%.2f\" y1=\"%.2f\" x2=\"%.2f\" y2=\"%.2f\" %s/>\n", p.x, p.y, q.x, q.y, style);
+        text_ += formatted("<line x1=\"%.2f\" y1=\"%.2f\" x2=\"%.2f\" y2=\"%.2f\" %s/>\n", p.x, p.y, q.x, q.y, style);
     }
 
     // The box's edges that meet in the farthest corner are hidden, the others are not.
@@ -198,11 +174,11 @@ class Panel {
             if (!(length > 0.0) || glm::dot(normal, kTowards) <= 0.0) continue;
             const int grey = 150 + static_cast<int>(90.0 * std::max(0.0, glm::dot(normal, kLight) / length));
             const glm::dvec2 a = at(p[0]), b = at(p[1]), c = at(p[2]);
-            append(text_,
-                   "<path d=\"M%.2f %.2fL%.2f %.2fL%.2f %.2fZ\" fill=\"#%02x%02x%02x\" stroke=\"#888\" "
-                   "stroke-width=\"0.3\" stroke-linejoin=\"round\"/>\n",
-                   a.x, a.y, b.x, b.y, c.x, c.y, static_cast<unsigned>(grey), static_cast<unsigned>(grey),
-                   static_cast<unsigned>(grey));
+            text_ += formatted(
+                "<path d=\"M%.2f %.2fL%.2f %.2fL%.2f %.2fZ\" fill=\"#%02x%02x%02x\" stroke=\"#888\" "
+                "stroke-width=\"0.3\" stroke-linejoin=\"round\"/>\n",
+                a.x, a.y, b.x, b.y, c.x, c.y, static_cast<unsigned>(grey), static_cast<unsigned>(grey),
+                static_cast<unsigned>(grey));
         }
         for (std::size_t i = 0; i + 1 < mesh_.outline.size(); i += 2)
             line(mesh_.outline[i], mesh_.outline[i + 1], "stroke=\"#555\" stroke-width=\"1\"");
@@ -222,20 +198,21 @@ std::string fit_svg(const std::vector<FittedMesh>& meshes) {
     const std::size_t columns = std::min<std::size_t>(4, meshes.size());
     const std::size_t rows = (meshes.size() + columns - 1) / std::max<std::size_t>(1, columns);
     std::string text;
-    append(text,
-           "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%g\" height=\"%g\" font-family=\"sans-serif\" "
-           "font-size=\"12\">\n",
-           kPanel * static_cast<double>(columns), (kPanel + kHeading) * static_cast<double>(rows));
+    text += formatted(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%g\" height=\"%g\" font-family=\"sans-serif\" "
+        "font-size=\"12\">\n",
+        kPanel * static_cast<double>(columns), (kPanel + kHeading) * static_cast<double>(rows));
     text += "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n";
     for (std::size_t i = 0; i < meshes.size(); ++i) {
         const FittedMesh& mesh = meshes[i];
         const glm::dvec2 corner(kPanel * static_cast<double>(i % columns),
                                 (kPanel + kHeading) * static_cast<double>(i / columns));
         const glm::dvec3 edges = 2.0 * glm::dvec3(mesh.chosen.box.half_extents);
-        append(text, "<text x=\"%g\" y=\"%g\" font-weight=\"bold\">%s</text>\n", corner.x + kMargin, corner.y + 20.0,
-               escaped(file_name(mesh.file)).c_str());
-        append(text, "<text x=\"%g\" y=\"%g\" fill=\"#555\">%s %.6g: %.4g × %.4g × %.4g</text>\n", corner.x + kMargin,
-               corner.y + 37.0, escaped(mesh.chosen.criterion).c_str(), mesh.chosen.value, edges.x, edges.y, edges.z);
+        text += formatted("<text x=\"%g\" y=\"%g\" font-weight=\"bold\">%s</text>\n", corner.x + kMargin,
+                          corner.y + 20.0, markup_text(file_name(mesh.file)).c_str());
+        text += formatted("<text x=\"%g\" y=\"%g\" fill=\"#555\">%s %.6g: %.4g × %.4g × %.4g</text>\n",
+                          corner.x + kMargin, corner.y + 37.0, markup_text(mesh.chosen.criterion).c_str(),
+                          mesh.chosen.value, edges.x, edges.y, edges.z);
         Panel(mesh, corner + glm::dvec2(0.5 * kPanel, kHeading + 0.5 * kPanel), 0.5 * kPanel - kMargin, text).draw();
     }
     return text + "</svg>\n";

@@ -11,6 +11,7 @@
 #include <numbers>
 
 #include "assets/file.hpp"
+#include "assets/print.hpp"
 #include "commands.hpp"
 #include "fit_planar_svg.hpp"
 #include "json/json.hpp"
@@ -181,16 +182,16 @@ Json to_json(const PlanarFit& fitted) {
 
 void print(const std::vector<PlanarFit>& fits, std::size_t refused) {
     if (fits.size() == 1) {
-        std::printf("%s: %zu corners on the hull, area %.9g, perimeter %.9g\n", fits[0].name.c_str(),
-                    fits[0].hull.size(), fits[0].hull_area, fits[0].hull_perimeter);
+        print_to(stdout, "%s: %zu corners on the hull, area %.9g, perimeter %.9g\n", printable(fits[0].name).c_str(),
+                 fits[0].hull.size(), fits[0].hull_area, fits[0].hull_perimeter);
         for (const PlanarShape& shape : fits[0].shapes)
-            std::printf("  %-22s %14.9g   %s, to %.1e of the perimeter\n", shape.name, shape.value, shape.certificate,
-                        shape.off);
+            print_to(stdout, "  %-22s %14.9g   %s, to %.1e of the perimeter\n", shape.name, shape.value,
+                     shape.certificate, shape.off);
         return;
     }
     // Means of what each bound exceeds the hull by.
-    std::printf("%zu polygons, %zu refused\n%-24s %14s %14s %12s\n", fits.size(), refused, "bound", "mean excess",
-                "worst excess", "worst proof");
+    print_to(stdout, "%zu polygons, %zu refused\n%-24s %14s %14s %12s\n", fits.size(), refused, "bound", "mean excess",
+             "worst excess", "worst proof");
     for (std::size_t s = 0; !fits.empty() && s < fits[0].shapes.size(); ++s) {
         double sum = 0.0, worst = 0.0, off = 0.0;
         std::size_t count = 0;
@@ -205,12 +206,12 @@ void print(const std::vector<PlanarFit>& fits, std::size_t refused) {
             worst = std::max(worst, value / own - 1.0);
             ++count;
         }
-        std::printf("%-24s %13.2f%% %13.2f%% %12.1e\n", fits[0].shapes[s].name,
-                    100.0 * sum / static_cast<double>(std::max<std::size_t>(1, count)), 100.0 * worst, off);
+        print_to(stdout, "%-24s %13.2f%% %13.2f%% %12.1e\n", fits[0].shapes[s].name,
+                 100.0 * sum / static_cast<double>(std::max<std::size_t>(1, count)), 100.0 * worst, off);
     }
-    std::printf(
-        "excess: over the hull, in area where the bound is by area, else in perimeter; proof: how far contacts "
-        "that must be are off, over the perimeter\n");
+    print_to(stdout,
+             "excess: over the hull, in area where the bound is by area, else in perimeter; proof: how far contacts "
+             "that must be are off, over the perimeter\n");
 }
 
 }  // namespace
@@ -225,7 +226,7 @@ Result<int> run_fit_planar(const PlanarFitRun& run) {
         const auto file = read_polygons(path, "", run.read.limits);
         if (!file) return file.error();
         for (const std::string& warning : file->warnings)
-            std::fprintf(stderr, "crofton: warning: %s\n", warning.c_str());
+            print_to(stderr, "crofton: warning: %s\n", printable(warning).c_str());
         for (const NamedPolygon& named : file->polygons) {
             auto fitted = fit_polygon(named);
             if (fitted) {

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "assets/flat_scene.hpp"
+#include "assets/print.hpp"
 #include "assets/scene_source.hpp"
 #include "commands.hpp"
 #include "frames_drawing.hpp"
@@ -102,16 +103,16 @@ class FramesRun {
         if (auto written = write_results(options_.output, facts, frames, verification); !written)
             return written.error();
         if (regions_ && options_.output.json != "-" && options_.output.csv != "-")
-            std::printf("the first frame was found %.0f ms after the start\n", first_frame_ms_);
+            print_to(stdout, "the first frame was found %.0f ms after the start\n", first_frame_ms_);
         if (auto written = write_report(facts, frames, verification); !written) return written.error();
         if (trace_)
             if (auto written = trace_->write(options_.trace); !written) return written.error();
         if (verification)
             for (const std::string& message : verification->messages)
-                std::fprintf(stderr, "crofton: mismatch: %s\n", message.c_str());
+                print_to(stderr, "crofton: mismatch: %s\n", printable(message).c_str());
         if (frames.size() < path_.cameras.size()) {
-            std::fprintf(stderr, "crofton: interrupted after %zu of %zu frames, which are written\n", frames.size(),
-                         path_.cameras.size());
+            print_to(stderr, "crofton: interrupted after %zu of %zu frames, which are written\n", frames.size(),
+                     path_.cameras.size());
             return kInterrupted;
         }
         return verification && verification->mismatches() > 0 ? kCheckFailed : kSuccess;
@@ -152,7 +153,7 @@ class FramesRun {
         focus_ = pipeline::focus_of(source_->scene);
         pipeline::Street street;
         if (options_.camera == "street") street = pipeline::street_of(*source_, focus_);
-        if (!street.remark.empty()) std::fprintf(stderr, "crofton: %s\n", street.remark.c_str());
+        if (!street.remark.empty()) print_to(stderr, "crofton: %s\n", printable(street.remark).c_str());
         pipeline::PathOptions path_options{options_.camera, options_.frames.value_or(0), options_.seed, aspect,
                                            options_.read.limits};
         street.set(path_options);
@@ -310,7 +311,7 @@ class FramesRun {
         }
         if (options_.draw || !options_.output.png.empty() || drawing.error().code != ErrorCode::unavailable)
             return drawing.error();
-        std::fprintf(stderr, "crofton: not drawing: %s\n", drawing.error().message.c_str());
+        print_to(stderr, "crofton: not drawing: %s\n", printable(drawing.error().message).c_str());
         return {};
     }
 

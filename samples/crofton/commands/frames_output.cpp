@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <string_view>
 
+#include "assets/print.hpp"
 #include "frames_table.hpp"
 #include "json/json.hpp"
 #include "pipeline/png.hpp"
@@ -80,11 +81,11 @@ FramesStream::FramesStream(const FramesOutput& output, const SceneFacts& scene, 
 
 void FramesStream::add(const FrameStatistics& frame) {
     const std::size_t number = added_++;
-    if (table_ && number == 0) std::fputs(table_header(scene_, frame.occlusion.has_value()).c_str(), stdout);
-    if (table_ && number % step_ == 0) std::fputs(table_row(frame).c_str(), stdout);
+    if (table_ && number == 0) print_text_to(stdout, table_header(scene_, frame.occlusion.has_value()));
+    if (table_ && number % step_ == 0) print_text_to(stdout, table_row(frame));
     if (csv_) {
         const std::string lines = pipeline::to_csv({&frame, 1});
-        std::fputs(lines.c_str() + (number == 0 ? 0 : lines.find('\n') + 1), stdout);
+        print_text_to(stdout, std::string_view(lines).substr(number == 0 ? 0 : lines.find('\n') + 1));
     }
     if (table_ || csv_) std::fflush(stdout);
 }
@@ -104,7 +105,7 @@ Result<void> write_results(const FramesOutput& output, const SceneFacts& scene, 
     }
     if (!output.csv.empty() && output.csv != "-")
         if (auto written = write_file(output.csv, pipeline::to_csv(frames)); !written) return written;
-    if (output.json != "-" && output.csv != "-") std::fputs(table_means(scene, frames, verification).c_str(), stdout);
+    if (output.json != "-" && output.csv != "-") print_text_to(stdout, table_means(scene, frames, verification));
     return {};
 }
 

@@ -4,18 +4,13 @@
 #include <array>
 #include <cstdio>
 
+#include "assets/print.hpp"
+
 namespace crofton::cli {
 namespace {
 
 using pipeline::FrameStatistics;
 using Whole = unsigned long long;
-
-template <class... Args>
-std::string format(const char* pattern, Args... args) {
-    std::array<char, 512> text;
-    std::snprintf(text.data(), text.size(), pattern, args...);
-    return text.data();
-}
 
 double ratio(double a, double b) {
     return b > 0.0 ? a / b : 0.0;
@@ -27,18 +22,18 @@ Whole triangles_seen(const FrameStatistics& f) {
 
 std::string row_with_occlusion(const FrameStatistics& f) {
     const pipeline::OccludedFrame& o = *f.occlusion;
-    return format("%6u   %7llu %7llu   %9llu %9llu   %9llu %9llu %8llu %7.1f %7.1f   %8.2f %8.2f %6.1f %10.2f\n",
-                  f.index, Whole{f.visible}, Whole{o.visible}, Whole{f.triangles_submitted},
-                  Whole{o.triangles_submitted}, Whole{f.triangles_passed}, Whole{o.triangles_passed}, triangles_seen(f),
-                  pipeline::passed_per_seen(f.triangles_passed, f.seen),
-                  pipeline::passed_per_seen(o.triangles_passed, f.seen), frame_ms(f), frame_ms_with_occlusion(f),
-                  ratio(frame_ms(f), frame_ms_with_occlusion(f)), 1e-3 * o.occlude_us);
+    return formatted("%6u   %7llu %7llu   %9llu %9llu   %9llu %9llu %8llu %7.1f %7.1f   %8.2f %8.2f %6.1f %10.2f\n",
+                     f.index, Whole{f.visible}, Whole{o.visible}, Whole{f.triangles_submitted},
+                     Whole{o.triangles_submitted}, Whole{f.triangles_passed}, Whole{o.triangles_passed},
+                     triangles_seen(f), pipeline::passed_per_seen(f.triangles_passed, f.seen),
+                     pipeline::passed_per_seen(o.triangles_passed, f.seen), frame_ms(f), frame_ms_with_occlusion(f),
+                     ratio(frame_ms(f), frame_ms_with_occlusion(f)), 1e-3 * o.occlude_us);
 }
 
 // No ratio where it is not less.
 std::string mean_row(const char* what, const char* pattern, double without, double with) {
-    const std::string numbers = format("  %-33s", what) + format(pattern, without) + format(pattern, with);
-    return numbers + (without >= with ? format(" %8.2f\n", ratio(without, with)) : "\n");
+    const std::string numbers = formatted("  %-33s", what) + formatted(pattern, without) + formatted(pattern, with);
+    return numbers + (without >= with ? formatted(" %8.2f\n", ratio(without, with)) : "\n");
 }
 
 std::string means_with_occlusion(std::span<const FrameStatistics> frames) {
@@ -47,7 +42,7 @@ std::string means_with_occlusion(std::span<const FrameStatistics> frames) {
         return mean_of(frames, [&](const FrameStatistics& f) { return value(*f.occlusion); });
     };
     const double submitted = rest([](const auto& f) { return f.triangles_submitted; });
-    std::string text = format("mean of %4zu frames                    without      with    ratio\n", frames.size());
+    std::string text = formatted("mean of %4zu frames                    without      with    ratio\n", frames.size());
     text += mean_row("instances drawn", " %9.1f", mean([](const auto& f) { return f.visible; }),
                      rest([](const auto& f) { return f.visible; }));
     text +=
@@ -62,8 +57,8 @@ std::string means_with_occlusion(std::span<const FrameStatistics> frames) {
         text +=
             mean_row("triangles of the shadow map", " %9.0f", mean([](const auto& f) { return f.shadow->triangles; }),
                      mean([](const auto& f) { return f.shadow->triangles_listed; }));
-        text += format("  %-33s %9s %9.3f\n", "ms to find casters, median", "",
-                       median([](const auto& f) { return 1e-3 * f.shadow->find_us; }));
+        text += formatted("  %-33s %9s %9.3f\n", "ms to find casters, median", "",
+                          median([](const auto& f) { return 1e-3 * f.shadow->find_us; }));
     }
     text += mean_row("ms to cull, median", " %9.3f", median([](const auto& f) { return 1e-3 * f.cull_us; }),
                      median([](const auto& f) { return 1e-3 * f.occlusion->occlude_us; }));
@@ -80,23 +75,24 @@ std::string means_with_occlusion(std::span<const FrameStatistics> frames) {
 std::string headline(std::span<const FrameStatistics> frames) {
     const auto seen = pipeline::mean_seen(frames);
     if (!seen) return {};
-    std::string text = format("passed / seen: %.1f", seen->passed_per_seen());
+    std::string text = formatted("passed / seen: %.1f", seen->passed_per_seen());
     if (frames.front().occlusion)
-        text += format(" without occlusion, %.1f with it", seen->passed_per_seen_with_occlusion());
-    text += format("; %.0f triangles of %.1f instances own a pixel, %.0f meet the frustum", seen->triangles,
-                   seen->instances, seen->passed);
-    return text + (frames.front().occlusion ? format(" (%.0f with occlusion)\n", seen->passed_with_occlusion) : "\n");
+        text += formatted(" without occlusion, %.1f with it", seen->passed_per_seen_with_occlusion());
+    text += formatted("; %.0f triangles of %.1f instances own a pixel, %.0f meet the frustum", seen->triangles,
+                      seen->instances, seen->passed);
+    return text +
+           (frames.front().occlusion ? formatted(" (%.0f with occlusion)\n", seen->passed_with_occlusion) : "\n");
 }
 
 std::string means_of_culling(const SceneFacts& scene, std::span<const FrameStatistics> frames) {
     const auto mean = [&](auto value) { return mean_of(frames, value); };
-    return format("mean of %zu frames: %.1f of %llu instances visible, %.1f straddling (%.1f improperly)\n",
-                  frames.size(), mean([](const auto& f) { return f.visible; }), Whole{scene.instances},
-                  mean([](const auto& f) { return f.straddling; }), mean([](const auto& f) { return f.improper; })) +
-           format("triangles: %.0f submitted, %.0f meet the frustum; colliding pairs: %.2f\n",
-                  mean([](const auto& f) { return f.triangles_submitted; }),
-                  mean([](const auto& f) { return f.triangles_passed; }),
-                  mean([](const auto& f) { return f.colliding_pairs; }));
+    return formatted("mean of %zu frames: %.1f of %llu instances visible, %.1f straddling (%.1f improperly)\n",
+                     frames.size(), mean([](const auto& f) { return f.visible; }), Whole{scene.instances},
+                     mean([](const auto& f) { return f.straddling; }), mean([](const auto& f) { return f.improper; })) +
+           formatted("triangles: %.0f submitted, %.0f meet the frustum; colliding pairs: %.2f\n",
+                     mean([](const auto& f) { return f.triangles_submitted; }),
+                     mean([](const auto& f) { return f.triangles_passed; }),
+                     mean([](const auto& f) { return f.colliding_pairs; }));
 }
 
 }  // namespace
@@ -110,8 +106,9 @@ double frame_ms_with_occlusion(const FrameStatistics& f) {
 }
 
 std::string table_header(const SceneFacts& scene, bool occlusion) {
-    const std::string title = format("%s: %llu nodes, %llu instances, %llu triangles\n\n", scene.name.c_str(),
-                                     Whole{scene.nodes}, Whole{scene.instances}, Whole{scene.triangles});
+    const std::string title =
+        formatted("%s: %llu nodes, %llu instances, %llu triangles\n\n", printable(scene.name).c_str(),
+                  Whole{scene.nodes}, Whole{scene.instances}, Whole{scene.triangles});
     if (!occlusion)
         return title +
                " frame   visible straddle   improper     nodes  submitted     passed     seen   ratio    clipped  "
@@ -127,12 +124,12 @@ std::string table_header(const SceneFacts& scene, bool occlusion) {
 
 std::string table_row(const FrameStatistics& f) {
     if (f.occlusion) return row_with_occlusion(f);
-    return format("%6u %9llu %8llu %10llu %9llu %10llu %10llu %8llu %7.1f %10llu %6llu %9.0f %8.0f %8.0f %9.0f\n",
-                  f.index, Whole{f.visible}, Whole{f.straddling}, Whole{f.improper}, Whole{f.nodes_tested},
-                  Whole{f.triangles_submitted}, Whole{f.triangles_passed}, triangles_seen(f),
-                  pipeline::passed_per_seen(f.triangles_passed, f.seen),
-                  Whole{f.gpu ? f.gpu->clipping_primitives : f.triangles_clipped}, Whole{f.colliding_pairs},
-                  f.update_us, f.cull_us, f.collide_us, f.draw_us);
+    return formatted("%6u %9llu %8llu %10llu %9llu %10llu %10llu %8llu %7.1f %10llu %6llu %9.0f %8.0f %8.0f %9.0f\n",
+                     f.index, Whole{f.visible}, Whole{f.straddling}, Whole{f.improper}, Whole{f.nodes_tested},
+                     Whole{f.triangles_submitted}, Whole{f.triangles_passed}, triangles_seen(f),
+                     pipeline::passed_per_seen(f.triangles_passed, f.seen),
+                     Whole{f.gpu ? f.gpu->clipping_primitives : f.triangles_clipped}, Whole{f.colliding_pairs},
+                     f.update_us, f.cull_us, f.collide_us, f.draw_us);
 }
 
 std::string table_means(const SceneFacts& scene, std::span<const FrameStatistics> frames,
@@ -140,18 +137,18 @@ std::string table_means(const SceneFacts& scene, std::span<const FrameStatistics
     const auto mean = [&](auto value) { return mean_of(frames, value); };
     std::string text = "\n" + headline(frames);
     text += frames.front().occlusion ? means_with_occlusion(frames) : means_of_culling(scene, frames);
-    text += format(
+    text += formatted(
         "collisions: %.1f pairs of boxes tested; early outs: %.1f by faces of the first, %.1f of the second, %.1f by "
         "edges; %.1f refined, %.1f contact points\n",
         mean([](const auto& f) { return f.pairs_tested; }), mean([](const auto& f) { return f.separated_by_face_a; }),
         mean([](const auto& f) { return f.separated_by_face_b; }),
         mean([](const auto& f) { return f.separated_by_edges; }), mean([](const auto& f) { return f.pairs_refined; }),
         mean([](const auto& f) { return f.contacts; }));
-    text += format("microseconds: update %.0f, cull %.0f, collide %.0f, draw %.0f\n",
-                   mean([](const auto& f) { return f.update_us; }), mean([](const auto& f) { return f.cull_us; }),
-                   mean([](const auto& f) { return f.collide_us; }), mean([](const auto& f) { return f.draw_us; }));
+    text += formatted("microseconds: update %.0f, cull %.0f, collide %.0f, draw %.0f\n",
+                      mean([](const auto& f) { return f.update_us; }), mean([](const auto& f) { return f.cull_us; }),
+                      mean([](const auto& f) { return f.collide_us; }), mean([](const auto& f) { return f.draw_us; }));
     if (const auto found = pipeline::hitches(frames))
-        text += format(
+        text += formatted(
             "regions: %llu came, %llu went, at most %llu attached; update and cull: median %.2f ms, worst %.2f ms "
             "(frame "
             "%u); waited %.0f ms for regions, of which the slowest took %.0f ms to load\n",
@@ -159,14 +156,14 @@ std::string table_means(const SceneFacts& scene, std::span<const FrameStatistics
             found->worst_frame, found->wait_ms, found->longest_load_ms);
     if (!frames.front().gpu) text += "nothing was drawn: counts are the CPU's alone\n";
     if (!verification) return text;
-    text +=
-        format("verified by brute force: %llu mismatches in %llu frames (%llu answers too close for double to check)\n",
-               Whole{verification->mismatches()}, Whole{verification->frames}, Whole{verification->unclear});
+    text += formatted(
+        "verified by brute force: %llu mismatches in %llu frames (%llu answers too close for double to check)\n",
+        Whole{verification->mismatches()}, Whole{verification->frames}, Whole{verification->unclear});
     if (frames.front().occlusion && frames.front().gpu)
-        text +=
-            format("verified by drawing: %llu triangles hidden that own a pixel, %llu pictures changed (%llu pixels)\n",
-                   Whole{verification->hidden_but_seen}, Whole{verification->changed_pictures},
-                   Whole{verification->changed_pixels});
+        text += formatted(
+            "verified by drawing: %llu triangles hidden that own a pixel, %llu pictures changed (%llu pixels)\n",
+            Whole{verification->hidden_but_seen}, Whole{verification->changed_pictures},
+            Whole{verification->changed_pixels});
     return text;
 }
 

@@ -13,6 +13,7 @@
 #include <numbers>
 #include <optional>
 
+#include "assets/print.hpp"
 #include "commands.hpp"
 #include "hierarchy_svg.hpp"
 #include "json/json.hpp"
@@ -158,15 +159,16 @@ Result<int> run_hierarchy(const HierarchyOptions& options) {
             bar.set(chains.size());
         }
     if (options.json != "-" && options.svg != "-") {
-        std::printf("Lines that hit all bounds down to a level and miss the object: improper tests.\n\n");
-        std::fputs(table_of(rows).c_str(), stdout);
-        std::printf("\n%-44s %s\n", "chain", "part of the first circle's improper tests that is saved, level by level");
+        print_to(stdout, "Lines that hit all bounds down to a level and miss the object: improper tests.\n\n");
+        print_text_to(stdout, table_of(rows));
+        print_to(stdout, "\n%-44s %s\n", "chain",
+                 "part of the first circle's improper tests that is saved, level by level");
         for (const Chain& chain : chains) {
-            std::printf("%-44s", chain.name.c_str());
+            print_to(stdout, "%-44s", printable(chain.name).c_str());
             for (const ChainLevel& level : chain.levels)
-                std::printf(" %6.2f%%",
-                            100.0 * (1.0 - (level.measure - chain.own) / (chain.levels[0].measure - chain.own)));
-            std::printf("\n");
+                print_to(stdout, " %6.2f%%",
+                         100.0 * (1.0 - (level.measure - chain.own) / (chain.levels[0].measure - chain.own)));
+            print_to(stdout, "\n");
         }
     }
     if (!options.json.empty())

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "assets/print.hpp"
+
 namespace crofton::cli {
 namespace {
 
@@ -30,30 +32,6 @@ std::string label(double x, double y, const char* anchor, const std::string& tex
 }
 
 }  // namespace
-
-std::string html_escape(const std::string& text) {
-    std::string result;
-    for (const char c : text) switch (c) {
-            case '&':
-                result += "&amp;";
-                break;
-            case '<':
-                result += "&lt;";
-                break;
-            case '>':
-                result += "&gt;";
-                break;
-            case '"':
-                result += "&quot;";
-                break;
-            case '\'':
-                result += "&#39;";
-                break;
-            default:
-                result += c;
-        }
-    return result;
-}
 
 std::string readable(double value) {
     char text[64];
@@ -88,8 +66,8 @@ std::string svg_chart(const std::string& id, const std::string& title, const std
     const auto y_of = [&](double value) { return kHeight - kBottom - (kHeight - kTop - kBottom) * value / top; };
 
     std::string html =
-        "<figure class=\"chart\" id=\"" + id + "\"><figcaption>" + html_escape(title) + " <small>" + html_escape(unit) +
-        "</small></figcaption><svg viewBox=\"0 0 640 240\" role=\"img\" aria-label=\"" + html_escape(title) + "\">";
+        "<figure class=\"chart\" id=\"" + id + "\"><figcaption>" + markup_text(title) + " <small>" + markup_text(unit) +
+        "</small></figcaption><svg viewBox=\"0 0 640 240\" role=\"img\" aria-label=\"" + markup_text(title) + "\">";
     for (double value = 0.0; value <= top * 1.0001; value += step) {
         html += "<line class=\"grid\" x1=\"" + number(kLeft) + "\" x2=\"" + number(kWidth - kRight) + "\" y1=\"" +
                 number(y_of(value)) + "\" y2=\"" + number(y_of(value)) + "\"/>";
@@ -113,7 +91,7 @@ std::string svg_chart(const std::string& id, const std::string& title, const std
         }
         html += "<polyline class=\"" + style + "\" points=\"" + points + "\"/>";
         const double mean = series[s].values.empty() ? 0.0 : sum / static_cast<double>(series[s].values.size());
-        legend += "<li class=\"" + style + "\"><i></i>" + html_escape(series[s].name) + " <small>mean " +
+        legend += "<li class=\"" + style + "\"><i></i>" + markup_text(series[s].name) + " <small>mean " +
                   readable(mean) + "</small></li>";
     }
     return html + "</svg><ul>" + legend + "</ul></figure>\n";

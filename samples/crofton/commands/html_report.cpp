@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "assets/print.hpp"
 #include "frames_table.hpp"
 #include "pipeline/png.hpp"
 
@@ -254,14 +255,14 @@ std::string pictures(const std::vector<ReportPicture>& list, std::span<const Fra
 std::string settings(const ReportContents& c) {
     std::string html = "<h2>Settings</h2><div class=\"scroll\"><table id=\"settings\">\n";
     for (const auto& [name, value] : c.settings)
-        if (!value.empty()) html += "<tr><td>" + html_escape(name) + "</td><td>" + html_escape(value) + "</td></tr>\n";
+        if (!value.empty()) html += "<tr><td>" + markup_text(name) + "</td><td>" + markup_text(value) + "</td></tr>\n";
     return html + "</table></div>\n";
 }
 
 }  // namespace
 
 std::string html_report(const ReportContents& c) {
-    const std::string title = "Crofton: " + html_escape(c.scene.name);
+    const std::string title = "Crofton: " + markup_text(c.scene.name);
     return "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>" + title +
            "</title>\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n" + kStyle +
            "</head><body>\n<h1>" + title + "</h1><p class=\"quiet\">" + readable(static_cast<double>(c.frames.size())) +

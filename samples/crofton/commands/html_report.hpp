@@ -23,8 +23,6 @@ struct Series {
 [[nodiscard]] std::string svg_chart(const std::string& id, const std::string& title, const std::string& unit,
                                     const std::vector<Series>& series);
 
-// Text made safe between tags and within quotes.
-[[nodiscard]] std::string html_escape(const std::string& text);
 // Grouped by thousands where whole, else three significant digits.
 [[nodiscard]] std::string readable(double value);
 

@@ -8,6 +8,7 @@
 #include <cstdio>
 
 #include "assets/flat_scene.hpp"
+#include "assets/print.hpp"
 #include "commands.hpp"
 #include "json/json.hpp"
 #include "lines_factors.hpp"
@@ -131,16 +132,16 @@ Result<void> run_lines(const LinesOptions& options) {
                                          {"surface", surface},
                                          {"chosen", best},
                                          {"methods", rows}});
-    std::printf("%s: %zu triangles, %.0f square metres; lines one by one from: %s\n", source->name.c_str(),
-                mesh.triangle_count(), surface, best);
-    std::printf("%-8s %-7s %12s %10s %10s %8s %10s %12s\n", "method", "numbers", "lines/s", "crossings", "deviation",
-                "wasted", "error", "efficiency");
+    print_to(stdout, "%s: %zu triangles, %.0f square metres; lines one by one from: %s\n",
+             printable(source->name).c_str(), mesh.triangle_count(), surface, best);
+    print_to(stdout, "%-8s %-7s %12s %10s %10s %8s %10s %12s\n", "method", "numbers", "lines/s", "crossings",
+             "deviation", "wasted", "error", "efficiency");
     for (const Json& row : rows.elements()) {
         const auto text = [&](const char* name) { return row.find(name)->text(); };
         const auto number = [&](const char* name) { return row.find(name)->number(); };
-        std::printf("%-8s %-7s %12.0f %10.3f %10.3f %7.1f%% %9.3f%% %12.0f\n", text("method").c_str(),
-                    text("sequence").c_str(), number("lines_per_second"), number("mean_crossings"), number("deviation"),
-                    100.0 * number("wasted"), 100.0 * number("relative_error"), number("efficiency"));
+        print_to(stdout, "%-8s %-7s %12.0f %10.3f %10.3f %7.1f%% %9.3f%% %12.0f\n", text("method").c_str(),
+                 text("sequence").c_str(), number("lines_per_second"), number("mean_crossings"), number("deviation"),
+                 100.0 * number("wasted"), 100.0 * number("relative_error"), number("efficiency"));
     }
     return {};
 }

@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include "assets/flat_scene.hpp"
+#include "assets/print.hpp"
 #include "commands.hpp"
 #include "json/json.hpp"
 #include "report.hpp"
@@ -26,7 +27,7 @@ Result<int> run_pairs(const FactorsRun& run) {
         rows.push_back(measured_row(pair.name, pair.source, pair.factor, found->value, found->standard_error));
         rows.back().cases = found->rays;
     }
-    if (run.json != "-") std::fputs(table_of(rows).c_str(), stdout);
+    if (run.json != "-") print_text_to(stdout, table_of(rows));
     if (!run.json.empty())
         if (const auto written = write_json(run.json, json_of(rows)); !written) return written.error();
     return std::all_of(rows.begin(), rows.end(), [](const VerifyRow& row) { return row.holds; }) ? kSuccess
@@ -90,15 +91,16 @@ Result<int> run_factors(const FactorsRun& run) {
     if (run.scenes.empty()) return run_pairs(run);
     Json rows = Json::array();
     if (run.json != "-")
-        std::printf("%-24s %10s %8s %10s %9s %10s %10s %10s\n", "scene", "triangles", "patches", "crossings", "escape",
-                    "bits", "of at most", "bias");
+        print_to(stdout, "%-24s %10s %8s %10s %9s %10s %10s %10s\n", "scene", "triangles", "patches", "crossings",
+                 "escape", "bits", "of at most", "bias");
     for (const std::string& scene : run.scenes) {
         const auto seen = look_at(scene, run);
         if (!seen) return seen.error();
         const auto& i = seen->information;
         if (run.json != "-")
-            std::printf("%-24s %10zu %8zu %10.3f %8.1f%% %10.3f %10.3f %10.3f\n", seen->name.c_str(), seen->triangles,
-                        seen->patches, seen->mean_crossings, 100.0 * seen->escaped, i.bits, i.entropy_bits, i.bias);
+            print_to(stdout, "%-24s %10zu %8zu %10.3f %8.1f%% %10.3f %10.3f %10.3f\n", printable(seen->name).c_str(),
+                     seen->triangles, seen->patches, seen->mean_crossings, 100.0 * seen->escaped, i.bits,
+                     i.entropy_bits, i.bias);
         rows.push_back({{"scene", seen->name},
                         {"triangles", seen->triangles},
                         {"patches", seen->patches},

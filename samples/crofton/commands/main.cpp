@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <string_view>
 
+#include "assets/print.hpp"
 #include "commands.hpp"
 
 namespace crofton::cli {
@@ -31,8 +32,8 @@ int become_study_program(char** argv) {
     if (error) self = argv[0];
     const std::string program = (self.parent_path() / "crofton-study").string();
     execv(program.c_str(), argv);
-    std::fprintf(stderr, "crofton: '%s' is in the program crofton-study: %s: %s\n", argv[1], program.c_str(),
-                 std::strerror(errno));
+    print_to(stderr, "crofton: '%s' is in the program crofton-study: %s: %s\n", argv[1], program.c_str(),
+             std::strerror(errno));
     if (errno == ENOENT)
         std::fputs("From a checkout: cmake --build --preset release --target crofton_study_cli\n", stderr);
     return kBadInput;

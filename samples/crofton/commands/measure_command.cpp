@@ -12,6 +12,7 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
+#include "assets/print.hpp"
 #include "commands.hpp"
 #include "json/json.hpp"
 #include "mesh_file.hpp"
@@ -137,10 +138,11 @@ Result<void> run_measure(const MeasureOptions& options) {
                                          {"F0", source.surface_area()},
                                          {"mean_crossings", seen.mean_crossings},
                                          {"rows", json_of(rows)}});
-    std::printf("%s: %zu triangles; %llu uniform lines through a sphere around it, whose surface area is F0 = %.6g\n\n",
-                options.file.c_str(), mesh->triangle_count(), static_cast<unsigned long long>(seen.lines),
-                source.surface_area());
-    std::fputs(table_of(rows).c_str(), stdout);
+    print_to(stdout,
+             "%s: %zu triangles; %llu uniform lines through a sphere around it, whose surface area is F0 = %.6g\n\n",
+             printable(options.file).c_str(), mesh->triangle_count(), static_cast<unsigned long long>(seen.lines),
+             source.surface_area());
+    print_text_to(stdout, table_of(rows));
     return {};
 }
 

@@ -5,6 +5,7 @@
 #include <crofton/radiosity/solver.hpp>
 #include <cstdio>
 
+#include "assets/print.hpp"
 #include "commands.hpp"
 #include "region_state.hpp"
 #include "report.hpp"
@@ -21,8 +22,8 @@ struct MergeRequest {
 // Says on stderr which shards to run again.
 void print_missing(const MergeRequest& options, const char* what, std::span<const std::uint32_t> missing,
                    std::uint32_t shards) {
-    std::fprintf(stderr, "crofton: %s: %s are missing; run again:", options.out.c_str(), what);
-    for (const std::uint32_t i : missing) std::fprintf(stderr, " --shard %u/%u", i, shards);
+    print_to(stderr, "crofton: %s: %s are missing; run again:", printable(options.out).c_str(), what);
+    for (const std::uint32_t i : missing) print_to(stderr, " --shard %u/%u", i, shards);
     std::fputs("\n", stderr);
 }
 

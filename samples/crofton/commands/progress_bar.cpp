@@ -8,6 +8,8 @@
 #include <cstdio>
 #include <mutex>
 
+#include "assets/print.hpp"
+
 namespace crofton::cli {
 namespace {
 
@@ -55,17 +57,17 @@ void print(const Shown& s) {
     const std::size_t done = std::min(s.done.load(), s.total);
     const std::string what = s.label.empty() ? s.command : s.label;
     if (!s.terminal && s.total > 0)
-        std::fprintf(stderr, "crofton: %s: %zu %% after %lld s%s\n", what.c_str(), 100 * done / s.total, seconds,
-                     time_left(s, done).c_str());
+        std::fprintf(stderr, "crofton: %s: %zu %% after %lld s%s\n", printable(what).c_str(), 100 * done / s.total,
+                     seconds, time_left(s, done).c_str());
     else if (!s.terminal)
-        std::fprintf(stderr, "crofton: %s: %lld s\n", what.c_str(), seconds);
+        std::fprintf(stderr, "crofton: %s: %lld s\n", printable(what).c_str(), seconds);
     else if (s.total > 0)
-        std::fprintf(stderr, "\r%s [%s%s] %zu %%, %lld s%s\033[K\r", what.c_str(),
+        std::fprintf(stderr, "\r%s [%s%s] %zu %%, %lld s%s\033[K\r", printable(what).c_str(),
                      std::string(kBarWidth * done / s.total, '#').c_str(),
                      std::string(kBarWidth - kBarWidth * done / s.total, '.').c_str(), 100 * done / s.total, seconds,
                      time_left(s, done).c_str());
     else
-        std::fprintf(stderr, "\r%s: %lld s\033[K\r", what.c_str(), seconds);
+        std::fprintf(stderr, "\r%s: %lld s\033[K\r", printable(what).c_str(), seconds);
     std::fflush(stderr);
 }
 

@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "assets/baked_source.hpp"
+#include "assets/print.hpp"
 #include "commands.hpp"
 #include "interrupt.hpp"
 #include "pipeline/pvs_scene.hpp"
@@ -203,12 +204,13 @@ Json to_json(const Views& views) {
 }
 
 void print(const pipeline::PvsViewFigures& views) {
-    std::printf(
+    print_to(
+        stdout,
         "%u street views: wrong pixels, mean and worst; triangles a view, and over those of objects that own a pixel\n",
         views.views);
     const auto row = [&](const char* name, const pipeline::PvsModeFigures& mode) {
-        std::printf("  %-26s %8.2g %8.2g %10.0f %7.2f\n", name, mode.wrong_mean, mode.wrong_worst, mode.triangles,
-                    mode.triangles / std::max(1.0, views.owner_triangles));
+        print_to(stdout, "  %-26s %8.2g %8.2g %10.0f %7.2f\n", name, mode.wrong_mean, mode.wrong_worst, mode.triangles,
+                 mode.triangles / std::max(1.0, views.owner_triangles));
     };
     row("conservative", views.conservative);
     row("statistical", views.statistical);
@@ -266,18 +268,18 @@ void print_figures(const Job& job, const pvs::Bake& bake, const pvs::Pvs& sets, 
     if (std::isfinite(sets.epsilon()))
         std::snprintf(promise, sizeof promise, "no pair above %.3g of its cell's lines is missed, with confidence %g\n",
                       sets.epsilon(), sets.confidence());
-    std::printf(
-        "%s: %zu cells (%zu solid, %zu that see out of the scene), %u objects, %llu of %llu lines in %.1f s\n"
-        "%s"
-        "pairs: %.1f %% seen, %.1f %% proved hidden (%.1f s), %.1f %% unseen\n",
-        job.source.name.c_str(), sets.cells().size(), solid, open, sets.object_count(),
-        static_cast<unsigned long long>(bake.lines_done()), static_cast<unsigned long long>(bake.lines_planned()),
-        job.trace_seconds, promise, percent(counts.seen), percent(counts.hidden), job.proof_seconds,
-        percent(counts.unseen));
+    print_to(stdout,
+             "%s: %zu cells (%zu solid, %zu that see out of the scene), %u objects, %llu of %llu lines in %.1f s\n"
+             "%s"
+             "pairs: %.1f %% seen, %.1f %% proved hidden (%.1f s), %.1f %% unseen\n",
+             printable(job.source.name).c_str(), sets.cells().size(), solid, open, sets.object_count(),
+             static_cast<unsigned long long>(bake.lines_done()), static_cast<unsigned long long>(bake.lines_planned()),
+             job.trace_seconds, promise, percent(counts.seen), percent(counts.hidden), job.proof_seconds,
+             percent(counts.unseen));
     const double pairs = static_cast<double>(sets.cells().size()) * std::max(1u, sets.object_count());
     if (file_bytes > 0)
-        std::printf("%.1f kB, %.3f bits a pair\n", 1e-3 * static_cast<double>(file_bytes),
-                    8.0 * static_cast<double>(file_bytes) / pairs);
+        print_to(stdout, "%.1f kB, %.3f bits a pair\n", 1e-3 * static_cast<double>(file_bytes),
+                 8.0 * static_cast<double>(file_bytes) / pairs);
 }
 
 // Returns what the lines have seen, and proofs for the rest. Proves nothing more once interrupted.
@@ -361,11 +363,11 @@ Result<int> run_pvs(const PvsRequest& options) {
     if (!bake) return bake.error();
     if (auto traced = trace(*job, *bake, pool); !traced) return traced.error();
     if (interrupted())
-        std::fprintf(stderr, "crofton: interrupted after %llu of %llu lines%s\n",
-                     static_cast<unsigned long long>(bake->lines_done()),
-                     static_cast<unsigned long long>(bake->lines_planned()),
-                     options.state.empty() ? "; with --state the next run would continue from here"
-                                           : ": the next run continues from here");
+        print_to(stderr, "crofton: interrupted after %llu of %llu lines%s\n",
+                 static_cast<unsigned long long>(bake->lines_done()),
+                 static_cast<unsigned long long>(bake->lines_planned()),
+                 options.state.empty() ? "; with --state the next run would continue from here"
+                                       : ": the next run continues from here");
     const bool all_lines = !interrupted();
     const auto sets = finish_sets(*job, *bake, pool);
     if (!sets) return sets.error();

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <mutex>
 
+#include "assets/print.hpp"
 #include "assets/scene_source.hpp"
 #include "commands.hpp"
 #include "for_each_region.hpp"
@@ -133,10 +134,11 @@ Result<int> bake_all(const RegionSetsBake& bake, Executor& executor) {
     if (!baked) return baked.error();
     const auto all = static_cast<double>(std::max<std::uint64_t>(1, totals.pairs.all()));
     if (bake.json != "-")
-        std::printf(
+        print_to(
+            stdout,
             "%s: baked the sets of %zu of %zu regions in %.1f ms (%.1f ms of CPU), %.1f kB; %.1f %% of their pairs of "
             "a cell and an object are proved hidden\n",
-            bake.folder.c_str(), totals.baked, places.size(), watch.milliseconds(), watch.cpu_milliseconds(),
+            printable(bake.folder).c_str(), totals.baked, places.size(), watch.milliseconds(), watch.cpu_milliseconds(),
             static_cast<double>(totals.bytes) / 1e3, 100.0 * static_cast<double>(totals.pairs.hidden) / all);
     if (!bake.json.empty())
         if (auto told = write_json(bake.json, {{"folder", bake.folder},

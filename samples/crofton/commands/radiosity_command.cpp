@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "assets/flat_scene.hpp"
+#include "assets/print.hpp"
 #include "commands.hpp"
 #include "interrupt.hpp"
 #include "json/json.hpp"
@@ -283,25 +284,25 @@ Result<int> run_radiosity(const RadiosityOptions& options) {
     if (options.reference > 0 && !reference)
         missing += std::string(missing.empty() ? ", but" : " and") + " no comparison with a reference";
     if (cut_short)
-        std::fprintf(stderr, "crofton: interrupted: the results of %llu runs are written%s%s\n",
-                     static_cast<unsigned long long>(solver->runs()), missing.c_str(),
-                     options.checkpoint.empty() ? "; with --checkpoint the next run would continue from here" : "");
+        print_to(stderr, "crofton: interrupted: the results of %llu runs are written%s%s\n",
+                 static_cast<unsigned long long>(solver->runs()), missing.c_str(),
+                 options.checkpoint.empty() ? "; with --checkpoint the next run would continue from here" : "");
     const int status = cut_short ? kInterrupted : kSuccess;
     if (!options.json.empty()) {
         if (auto written = write_json(options.json, report); !written) return written.error();
         return status;
     }
     if (solver->runs() == 0) {
-        std::printf(
-            "%s: this part has no runs: they are made in chains of eight, and there are more parts than chains\n",
-            source->name.c_str());
+        print_to(stdout,
+                 "%s: this part has no runs: they are made in chains of eight, and there are more parts than chains\n",
+                 printable(source->name).c_str());
         return status;
     }
-    std::printf("%s: %zu patches, %llu runs, %llu lines in %.1f s, relative error %.3f %%\n", source->name.c_str(),
-                lit->patches.count(), static_cast<unsigned long long>(solver->runs()),
-                static_cast<unsigned long long>(solver->lines_traced()), seconds, 100.0 * solver->relative_error());
-    std::printf("%.1f %% of patches are within 10 %% of their light, by the spread of the runs\n",
-                100.0 * solver->share_within(0.1));
+    print_to(stdout, "%s: %zu patches, %llu runs, %llu lines in %.1f s, relative error %.3f %%\n",
+             printable(source->name).c_str(), lit->patches.count(), static_cast<unsigned long long>(solver->runs()),
+             static_cast<unsigned long long>(solver->lines_traced()), seconds, 100.0 * solver->relative_error());
+    print_to(stdout, "%.1f %% of patches are within 10 %% of their light, by the spread of the runs\n",
+             100.0 * solver->share_within(0.1));
     if (reference) print(*reference);
     if (field) print(*field);
     return status;

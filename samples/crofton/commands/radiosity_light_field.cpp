@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <glm/geometric.hpp>
 
+#include "assets/print.hpp"
 #include "interrupt.hpp"
 #include "pipeline/png.hpp"
 #include "progress_bar.hpp"
@@ -94,13 +95,13 @@ Json to_json(const LightFieldReport& report) {
 }
 
 void print(const LightFieldReport& report) {
-    std::printf(
-        "light field: %llu stored lines with %llu crossings, %.0f MB; those within %.3g m of the eye give %llu "
-        "points;\n"
-        "the picture from them is %.2f %% off in light, %.2f %% in colour\n",
-        static_cast<unsigned long long>(report.lines), static_cast<unsigned long long>(report.crossings),
-        1e-6 * static_cast<double>(report.bytes), report.aperture, static_cast<unsigned long long>(report.samples),
-        100.0 * report.relative_error, 100.0 * report.color_error);
+    print_to(stdout,
+             "light field: %llu stored lines with %llu crossings, %.0f MB; those within %.3g m of the eye give %llu "
+             "points;\n"
+             "the picture from them is %.2f %% off in light, %.2f %% in colour\n",
+             static_cast<unsigned long long>(report.lines), static_cast<unsigned long long>(report.crossings),
+             1e-6 * static_cast<double>(report.bytes), report.aperture, static_cast<unsigned long long>(report.samples),
+             100.0 * report.relative_error, 100.0 * report.color_error);
 }
 
 }  // namespace crofton::cli

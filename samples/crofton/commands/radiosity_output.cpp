@@ -14,6 +14,7 @@
 #include <optional>
 #include <utility>
 
+#include "assets/print.hpp"
 #include "assets/split_mesh.hpp"
 #include "interrupt.hpp"
 #include "json/json.hpp"
@@ -319,7 +320,8 @@ Json to_json(const ReferenceReport& report) {
 }
 
 void print(const ReferenceReport& report) {
-    std::printf(
+    print_to(
+        stdout,
         "compared with %llu runs of another seed (%.2f %%): %.1f %% of patches within 10 %% of their light, %.1f %% "
         "off by "
         "more than 25 %%; half within %.1f %%, 95 %% within %.1f %%\n",

@@ -3,6 +3,8 @@
 
 #include <cstdio>
 
+#include "assets/print.hpp"
+
 namespace crofton::cli {
 
 void add_read_options(Command& command, ReadOptions& options) {
@@ -29,8 +31,8 @@ void add_unit_option(Command& command, ReadOptions& options) {
 void print_warnings(const std::vector<std::string>& warnings) {
     constexpr std::size_t kMost = 20;
     for (std::size_t i = 0; i < warnings.size() && i < kMost; ++i)
-        std::fprintf(stderr, "crofton: warning: %s\n", warnings[i].c_str());
-    if (warnings.size() > kMost) std::fprintf(stderr, "crofton: warning: and %zu more\n", warnings.size() - kMost);
+        print_to(stderr, "crofton: warning: %s\n", printable(warnings[i]).c_str());
+    if (warnings.size() > kMost) print_to(stderr, "crofton: warning: and %zu more\n", warnings.size() - kMost);
 }
 
 Result<void> refuse_if_strict(const std::string& path, const std::vector<std::string>& warnings,

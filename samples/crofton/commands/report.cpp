@@ -3,15 +3,15 @@
 
 #include <cstdio>
 
+#include "assets/print.hpp"
 #include "commands.hpp"
 #include "json/json.hpp"
 
 namespace crofton::cli {
 int report_error(std::string_view geometry, const Error& error) {
-    std::fprintf(stderr, "crofton: %.*s%s%s", static_cast<int>(geometry.size()), geometry.data(),
-                 geometry.empty() ? "" : ": ", error.message.c_str());
-    if (error.item != kNoItem) std::fprintf(stderr, " (item %llu)", static_cast<unsigned long long>(error.item));
-    std::fputc('\n', stderr);
+    const std::string where = geometry.empty() ? "" : printable(geometry) + ": ";
+    const std::string item = error.item == kNoItem ? "" : " (item " + std::to_string(error.item) + ")";
+    print_to(stderr, "crofton: %s%s%s\n", where.c_str(), printable(error.message).c_str(), item.c_str());
     return error.code == ErrorCode::cancelled ? kInterrupted : kBadInput;
 }
 

@@ -3,6 +3,8 @@
 
 #include <cstdio>
 
+#include "assets/print.hpp"
+
 namespace crofton::cli {
 
 std::string svg_head(double width, double height) {
@@ -18,8 +20,7 @@ void svg_text(std::string& svg, double x, double y, const std::string& color, co
     char place[64];
     std::snprintf(place, sizeof place, "<text x='%.1f' y='%.1f'", x, y);
     svg += place + (color.empty() ? std::string(">") : " fill='" + color + "'>");
-    for (const char c : text) svg += c == '<' ? "&lt;" : c == '&' ? "&amp;" : std::string(1, c);
-    svg += "</text>\n";
+    svg += markup_text(text) + "</text>\n";
 }
 
 void SvgPanel::include(const glm::dvec2& p) {

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "assets/file.hpp"
+#include "assets/print.hpp"
 #include "assets/scene_source.hpp"
 #include "commands.hpp"
 #include "interrupt.hpp"
@@ -83,23 +84,24 @@ struct Totals {
 };
 
 void print_table(const TriangulateOptions& options, const Totals& t) {
-    std::printf("%-16s %10s %10s %8s %10s %16s %10s %12s\n", "method", "polygons", "vertices", "holes", "triangles",
-                "weight", "optimal", "us/vertex");
-    std::printf("%-16s %10zu %10zu %8zu %10zu %16.8g %10zu %12.3f\n", options.method.c_str(), t.polygons, t.vertices,
-                t.holes, t.triangles, t.weight, t.optimal,
-                t.vertices ? t.microseconds / static_cast<double>(t.vertices) : 0.0);
+    print_to(stdout, "%-16s %10s %10s %8s %10s %16s %10s %12s\n", "method", "polygons", "vertices", "holes",
+             "triangles", "weight", "optimal", "us/vertex");
+    print_to(stdout, "%-16s %10zu %10zu %8zu %10zu %16.8g %10zu %12.3f\n", options.method.c_str(), t.polygons,
+             t.vertices, t.holes, t.triangles, t.weight, t.optimal,
+             t.vertices ? t.microseconds / static_cast<double>(t.vertices) : 0.0);
     if (t.optimal < t.polygons && std::isfinite(t.largest_gap)) {
         const std::size_t open = t.polygons - t.optimal;
-        std::printf("%zu %s not proven minimal, but at most %.2g times as heavy as the minimum\n", open,
-                    open == 1 ? "polygon is" : "polygons are", 1.0 + t.largest_gap);
+        print_to(stdout, "%zu %s not proven minimal, but at most %.2g times as heavy as the minimum\n", open,
+                 open == 1 ? "polygon is" : "polygons are", 1.0 + t.largest_gap);
     }
     if (t.out_of_memory)
-        std::printf("%zu %s the limit of memory before that of time: --memory-limit %.0f is more\n", t.out_of_memory,
-                    t.out_of_memory == 1 ? "polygon reached" : "polygons reached", 4.0 * std::max(options.memory, 1.0));
+        print_to(stdout, "%zu %s the limit of memory before that of time: --memory-limit %.0f is more\n",
+                 t.out_of_memory, t.out_of_memory == 1 ? "polygon reached" : "polygons reached",
+                 4.0 * std::max(options.memory, 1.0));
     else if (t.optimal < t.polygons && options.method == "minimum-weight" && !options.is_work_given &&
              !std::isfinite(options.seconds))
-        std::printf("Larger limits may prove more: --memory-limit, and --work-limit or --time-limit\n");
-    if (t.refused) std::printf("%zu %s refused\n", t.refused, t.refused == 1 ? "polygon was" : "polygons were");
+        print_to(stdout, "Larger limits may prove more: --memory-limit, and --work-limit or --time-limit\n");
+    if (t.refused) print_to(stdout, "%zu %s refused\n", t.refused, t.refused == 1 ? "polygon was" : "polygons were");
 }
 
 Result<int> run_polygons(const TriangulateOptions& options, Method method) {
@@ -130,8 +132,9 @@ Result<int> run_polygons(const TriangulateOptions& options, Method method) {
             } else {
                 ++totals.refused;
                 const bool named = polygons[i].name != assets::file_name(options.file);
-                std::fprintf(stderr, "crofton: %s: %s%s%s\n", options.file.c_str(),
-                             named ? polygons[i].name.c_str() : "", named ? ": " : "", done.error().message.c_str());
+                print_to(stderr, "crofton: %s: %s%s%s\n", printable(options.file).c_str(),
+                         named ? printable(polygons[i].name).c_str() : "", named ? ": " : "",
+                         printable(done.error().message).c_str());
                 entries.push_back(
                     {{"name", polygons[i].name},
                      {"error", {{"code", to_string(done.error().code)}, {"message", done.error().message}}}});
@@ -161,8 +164,8 @@ Result<int> run_polygons(const TriangulateOptions& options, Method method) {
     }
     if (options.json != "-" && options.svg != "-") print_table(options, totals);
     if (totals.polygons + totals.refused < polygons.size()) {
-        std::fprintf(stderr, "crofton: interrupted after %zu of %zu polygons, which are written\n",
-                     totals.polygons + totals.refused, polygons.size());
+        print_to(stderr, "crofton: interrupted after %zu of %zu polygons, which are written\n",
+                 totals.polygons + totals.refused, polygons.size());
         return kInterrupted;
     }
     return totals.refused ? kBadInput : kSuccess;

@@ -8,6 +8,7 @@
 
 #include "assets/gltf_builder.hpp"
 #include "assets/gltf_patches.hpp"
+#include "assets/print.hpp"
 #include "assets/scene_source.hpp"
 #include "commands.hpp"
 #include "interrupt.hpp"
@@ -76,9 +77,9 @@ struct Sums {
     }
 
     void print(const std::string& name) const {
-        std::printf("%-24s %8zu %10zu %10zu %9zu %9zu %9zu %9zu %14.8g %14.8g\n", name.c_str(), primitives,
-                    triangles_before, triangles_after, patches, improved, unproven, left_alone + refused, weight_before,
-                    weight_after);
+        print_to(stdout, "%-24s %8zu %10zu %10zu %9zu %9zu %9zu %9zu %14.8g %14.8g\n", printable(name).c_str(),
+                 primitives, triangles_before, triangles_after, patches, improved, unproven, left_alone + refused,
+                 weight_before, weight_after);
     }
 };
 
@@ -150,20 +151,20 @@ ByMesh by_mesh(const std::vector<PrimitivePatches>& outcomes) {
 void print_reasons(const std::vector<PrimitivePatches>& outcomes) {
     std::size_t count = 0;
     const auto line = [&](const std::string& what, const std::string& why) {
-        if (++count == 1) std::printf("left as they were:\n");
-        if (count <= kMostReasons) std::printf("  %s: %s\n", what.c_str(), why.c_str());
+        if (++count == 1) print_to(stdout, "left as they were:\n");
+        if (count <= kMostReasons) print_to(stdout, "  %s: %s\n", printable(what).c_str(), printable(why).c_str());
     };
     for (const PrimitivePatches& p : outcomes) {
         if (!p.left_alone.empty()) line(label(p), p.left_alone);
         for (const auto& r : p.report.results)
             if (!r.refused.empty()) line(label(p) + ", patch at triangle " + std::to_string(r.triangles[0]), r.refused);
     }
-    if (count > kMostReasons) std::printf("  and %zu more, which --json lists\n", count - kMostReasons);
+    if (count > kMostReasons) print_to(stdout, "  and %zu more, which --json lists\n", count - kMostReasons);
 }
 
 void print_table(const ByMesh& meshes, const Sums& total, const std::vector<PrimitivePatches>& outcomes) {
-    std::printf("%-24s %8s %10s %10s %9s %9s %9s %9s %14s %14s\n", "mesh", "parts", "triangles", "after", "patches",
-                "improved", "unproven", "left", "weight before", "weight after");
+    print_to(stdout, "%-24s %8s %10s %10s %9s %9s %9s %9s %14s %14s\n", "mesh", "parts", "triangles", "after",
+             "patches", "improved", "unproven", "left", "weight before", "weight after");
     for (const auto& primitives : meshes) {
         Sums sums;
         for (const PrimitivePatches* p : primitives) sums.add(*p);
@@ -193,7 +194,7 @@ Result<int> run_meshes(const MeshRun& run) {
     auto document = document_of(run.file, run.read);
     if (!document) return document.error();
     for (const auto& warning : document->warnings)
-        std::fprintf(stderr, "crofton: warning: %s: %s\n", run.file.c_str(), warning.c_str());
+        print_to(stderr, "crofton: warning: %s: %s\n", printable(run.file).c_str(), printable(warning).c_str());
     if (auto whole = refuse_if_strict(run.file, document->warnings, run.read); !whole) return whole.error();
     assets::PatchSettings settings{run.triangulation, run.tolerance, run.attribute_tolerance};
     std::vector<PrimitivePatches> outcomes;
@@ -219,14 +220,15 @@ Result<int> run_meshes(const MeshRun& run) {
     for (const PrimitivePatches& p : outcomes) {
         total.add(p);
         if (p.error)
-            std::fprintf(stderr, "crofton: %s: %s: %s\n", run.file.c_str(), label(p).c_str(), p.error->message.c_str());
+            print_to(stderr, "crofton: %s: %s: %s\n", printable(run.file).c_str(), printable(label(p)).c_str(),
+                     printable(p.error->message).c_str());
     }
     const ByMesh meshes = by_mesh(outcomes);
     if (!run.json.empty())
         if (auto written = write_report(run, meshes, total); !written) return written.error();
     if (run.json != "-" && run.out != "-") print_table(meshes, total, outcomes);
     if (interrupted()) {
-        std::fprintf(stderr, "crofton: interrupted: the remaining meshes are written unchanged\n");
+        print_to(stderr, "crofton: interrupted: the remaining meshes are written unchanged\n");
         return kInterrupted;
     }
     return total.refused ? kBadInput : kSuccess;

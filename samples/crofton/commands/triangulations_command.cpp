@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "assets/gltf_primitive.hpp"
+#include "assets/print.hpp"
 #include "assets/scene_source.hpp"
 #include "commands.hpp"
 #include "json/json.hpp"
@@ -126,17 +127,17 @@ Json to_json(const Study& study, const Comparison& passed, const QuadComparison&
 
 void print(const Study& study, const Comparison& passed, const QuadComparison& quads,
            const Result<std::vector<DrawCost>>& drawn, std::uint64_t frusta) {
-    std::printf("%zu polygons, %zu refused, %zu not proven minimal; %llu frusta\n", study.polygons.size(),
-                study.refused, study.unproven, static_cast<unsigned long long>(frusta));
-    std::printf("%-15s %13s %7s | %9s %20s | %9s %18s %9s | %9s %9s\n", "method", "weight", "ratio", "passed:(6)",
-                "measured (95 %)", "quads:(A)", "met (95 %)", "covered", "clipped", "ms");
+    print_to(stdout, "%zu polygons, %zu refused, %zu not proven minimal; %llu frusta\n", study.polygons.size(),
+             study.refused, study.unproven, static_cast<unsigned long long>(frusta));
+    print_to(stdout, "%-15s %13s %7s | %9s %20s | %9s %18s %9s | %9s %9s\n", "method", "weight", "ratio", "passed:(6)",
+             "measured (95 %)", "quads:(A)", "met (95 %)", "covered", "clipped", "ms");
     for (std::size_t m = 0; m < kMethods.size(); ++m) {
-        std::printf("%-15s %13.7g %7.4f | %9.5f %9.5f +- %7.5f | %9.2f %9.2f +- %5.2f %9.2f", kMethodNames[m],
-                    study.weight[m], study.weight[m] / study.weight[2], passed.predicted[m], passed.measured[m],
-                    1.96 * passed.error[m], quads.met.predicted[m], quads.met.measured[m], 1.96 * quads.met.error[m],
-                    quads.covered[m]);
-        if (drawn) std::printf(" | %9.1f %9.3f", (*drawn)[m].clipped, (*drawn)[m].milliseconds);
-        std::printf("\n");
+        print_to(stdout, "%-15s %13.7g %7.4f | %9.5f %9.5f +- %7.5f | %9.2f %9.2f +- %5.2f %9.2f", kMethodNames[m],
+                 study.weight[m], study.weight[m] / study.weight[2], passed.predicted[m], passed.measured[m],
+                 1.96 * passed.error[m], quads.met.predicted[m], quads.met.measured[m], 1.96 * quads.met.error[m],
+                 quads.covered[m]);
+        if (drawn) print_to(stdout, " | %9.1f %9.3f", (*drawn)[m].clipped, (*drawn)[m].milliseconds);
+        print_to(stdout, "\n");
     }
 }
 
@@ -152,7 +153,7 @@ Result<int> run_triangulations(const TriangulationsRequest& run) {
     const Comparison passed = triangles_passed(study.polygons, run.frusta);
     const QuadComparison quads = pixel_quads(study.polygons, std::max<std::uint64_t>(1, run.frusta / 20), kQuadSize);
     const auto drawn = draw_wall(study.polygons, kFrames);
-    if (!drawn) std::fprintf(stderr, "crofton: nothing drawn: %s\n", drawn.error().message.c_str());
+    if (!drawn) print_to(stderr, "crofton: nothing drawn: %s\n", printable(drawn.error().message).c_str());
     if (!run.json.empty()) {
         const Json document{{"file", assets::file_name(run.file)},
                             {"polygons", study.polygons.size()},

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <memory>
 
+#include "assets/print.hpp"
 #include "commands.hpp"
 #include "json/json.hpp"
 #include "progress_bar.hpp"
@@ -60,13 +61,13 @@ int run_verify(const VerifyRequest& request) {
         for (VerifyRow& row : *found) rows.push_back(std::move(row));
         bar.set(++done);
     }
-    if (request.json_path != "-") std::fputs(table_of(rows).c_str(), stdout);
+    if (request.json_path != "-") print_text_to(stdout, table_of(rows));
     if (!request.json_path.empty())
         if (const auto written = write_json(request.json_path, json_of(rows)); !written)
             return report_error("", written.error());
     std::size_t failed = 0;
     for (const VerifyRow& row : rows) failed += row.holds ? 0 : 1;
-    if (failed > 0) std::fprintf(stderr, "crofton: %zu of %zu claims do not hold\n", failed, rows.size());
+    if (failed > 0) print_to(stderr, "crofton: %zu of %zu claims do not hold\n", failed, rows.size());
     return failed == 0 ? kSuccess : kCheckFailed;
 }
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "assets/file.hpp"
+#include "assets/print.hpp"
 #include "pipeline/camera_path.hpp"
 #include "pipeline/png.hpp"
 
@@ -61,7 +62,7 @@ Result<void> Session::run_frame() {
     if (turned || std::exchange(is_lasting_, false)) return turned;
     if (recoveries_++ == kMaxRecoveries) return turned;
     report(turned.error());
-    std::fprintf(stderr, "crofton: restarting the device\n");
+    print_to(stderr, "crofton: restarting the device\n");
     return recover();
 }
 
@@ -374,7 +375,7 @@ Result<void> Session::save_screenshots() {
 }
 
 void Session::report(const Error& error) {
-    std::fprintf(stderr, "crofton: %s\n", error.message.c_str());
+    print_to(stderr, "crofton: %s\n", printable(error.message).c_str());
     notices_.push_back({error.message, true, seconds_ + kErrorSeconds});
 }
 

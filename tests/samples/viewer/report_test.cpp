@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "../cli/run_cli.hpp"
+#include "assets/print.hpp"
 #include "commands/html_report.hpp"
 #include "pipeline/frame_statistics.hpp"
 
@@ -33,7 +34,7 @@ std::string without_pictures(std::string page) {
 TEST_SUITE("cli/html_report") {
     TEST_CASE("text that looks like markup stays text, numbers are grouped, and a chart of nothing is a chart") {
         using namespace crofton::cli;
-        CHECK(html_escape("<a href=\"x\">&'</a>") == "&lt;a href=&quot;x&quot;&gt;&amp;&#39;&lt;/a&gt;");
+        CHECK(markup_text("<a href=\"x\">&'</a>") == "&lt;a href=&quot;x&quot;&gt;&amp;&#39;&lt;/a&gt;");
         CHECK(readable(1234567.0) == "1&#8239;234&#8239;567");
         CHECK(readable(0.12345) == "0.123");
         const std::string empty = svg_chart("id", "title", "unit", {});
@@ -102,8 +103,8 @@ TEST_SUITE("cli/html_report") {
                 CAPTURE(width);
                 // Windows are not as narrow as a phone: the page is shown in a frame of the width.
                 write_contents(probed, "<title></title><iframe style=\"border:0\" height=\"4000\" width=\"" +
-                                           std::to_string(width) + "\" srcdoc=\"" +
-                                           crofton::cli::html_escape(page + probe) + "\"></iframe>");
+                                           std::to_string(width) + "\" srcdoc=\"" + crofton::markup_text(page + probe) +
+                                           "\"></iframe>");
                 const std::string layout =
                     "chromium --headless --no-sandbox --disable-gpu --user-data-dir='" + scratch().file("chromium") +
                     "' --blink-settings=preferredColorScheme=" + std::to_string(light) +
