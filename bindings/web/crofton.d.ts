@@ -63,6 +63,8 @@ export interface MeshOptions {
     /** False: queries and contacts take the mesh for its box, and `update` takes less time. */
     triangles?: boolean;
 }
+/** Limits a query of a world: a layer mask, or a mask and objects that are not found, such as the one that asks. */
+export type Filter = number | { layers?: number; ignored?: ObjectHandle[] };
 export interface RegionObject { box?: BoxLike; sphere?: Sphere; shape?: Shape; mesh?: number; transform?: Vector; user?: number; layers?: number;
     collidesWith?: number; occludes?: boolean; onlyOccludes?: boolean }
 export interface Triangulation {
@@ -243,14 +245,14 @@ export interface World extends Owned {
     update(): void;
     /** `camera` or `volume`, or both: then objects are tested against the volume, and hidden from the camera. */
     view(request: ViewRequest | ViewRequest[], visible: ViewResult): ViewResult;
-    raycast(origin: Vector, direction: Vector, maxT?: number, layers?: number): ObjectHit | null;
+    raycast(origin: Vector, direction: Vector, maxT?: number, filter?: Filter): ObjectHit | null;
     /** Three numbers each. `t` is infinite where nothing is hit, the object's index and the triangle are -1. */
-    raycastMany(origins: Float64Array, directions: Float64Array, maxT?: number, layers?: number):
+    raycastMany(origins: Float64Array, directions: Float64Array, maxT?: number, filter?: Filter):
         { t: Float64Array; objects: Int32Array; triangles: Int32Array; normals: Float64Array };
-    raycastAll(origin: Vector, direction: Vector, maxT?: number, layers?: number): ObjectHit[];
-    raycastAny(origin: Vector, direction: Vector, maxT?: number, layers?: number): boolean;
+    raycastAll(origin: Vector, direction: Vector, maxT?: number, filter?: Filter): ObjectHit[];
+    raycastAny(origin: Vector, direction: Vector, maxT?: number, filter?: Filter): boolean;
     /** The first object that a moving shape meets; objects are at rest. */
-    cast(shape: Placed, motion: Motion, layers?: number): ShapeHit | null;
+    cast(shape: Placed, motion: Motion, filter?: Filter): ShapeHit | null;
     pairs(): { first: ObjectRef; second: ObjectRef }[];
     contacts(): Contact[];
     readonly statistics: Record<'objects' | 'resting' | 'moving' | 'boxesChanged' | 'outOfRange', number>;
@@ -259,9 +261,9 @@ export interface World extends Owned {
     objectIn(region: AttachedRegion, place: number): ObjectHandle;
     placeOf(object: ObjectHandle): { region: AttachedRegion; place: number };
     /** By index. Touching counts. */
-    overlap(shape: QueryShape, layers?: number): ObjectRef[];
+    overlap(shape: QueryShape, filter?: Filter): ObjectRef[];
     /** `distance` is 0 for an object that overlaps. */
-    closest(shape: QueryShape, maxDistance?: number, layers?: number): (ObjectRef & { distance: number; onShape: number[]; onObject: number[] }) | null;
+    closest(shape: QueryShape, maxDistance?: number, filter?: Filter): (ObjectRef & { distance: number; onShape: number[]; onObject: number[] }) | null;
 }
 export interface Crofton {
     readonly version: string;

@@ -74,7 +74,7 @@ int main(void) {
     }
     check(crofton_world_get_statistics(world, &statistics));
     check(crofton_world_pairs(world, &pairs, &pair_count));
-    check(crofton_world_raycast(world, &ray, 1, ~0u, &hit));
+    check(crofton_world_raycast(world, &ray, 1, NULL, &hit));
     const size_t count = (size_t)statistics.object_count;
     printf("crofton %s: %zu of %zu objects in view, %zu pairs of bounds meet, %zu of them touch\n",
            crofton_version_string(), seen, count, pair_count, contact_count);

@@ -25,7 +25,7 @@ std::optional<Character::Hit> Character::sweep(const World& world, const glm::dv
     // The time is the share of the way.
     const double length = glm::length(way), duration = 1.0 + 4.0 * options_.skin / length;
     const convex::CastOptions cast_options{.duration = duration, .tolerance = 0.01 * options_.skin};
-    const auto found = world.cast(shape_, pose, {.velocity = way}, cast_options, options_.layers);
+    const auto found = world.cast(shape_, pose, {.velocity = way}, cast_options, {options_.layers});
     if (!found) return Hit{0.0, glm::dvec3(0.0)};
     if (!*found) {
         position_ += way;

@@ -170,10 +170,10 @@ TEST_SUITE("capi/hooks") {
                 if (i == 1) before = counter.allocations;
                 REQUIRE(look(world.get(), view, visible.get()) == CROFTON_OK);
                 REQUIRE(look_at_many(world.get(), std::span(&view, 1), in_views.get()) == CROFTON_OK);
-                REQUIRE(crofton_world_raycast(world.get(), &ray, 1, ~0u, &hit) == CROFTON_OK);
-                REQUIRE(crofton_world_raycast_all(world.get(), &ray, ~0u, found.get()) == CROFTON_OK);
-                REQUIRE(world_overlap_sphere(world.get(), center, 9, ~0u, found.get()) == CROFTON_OK);
-                REQUIRE(world_closest_to_sphere(world.get(), center, 9, 1e3, ~0u, &closest) == CROFTON_OK);
+                REQUIRE(crofton_world_raycast(world.get(), &ray, 1, nullptr, &hit) == CROFTON_OK);
+                REQUIRE(crofton_world_raycast_all(world.get(), &ray, nullptr, found.get()) == CROFTON_OK);
+                REQUIRE(world_overlap_sphere(world.get(), center, 9, nullptr, found.get()) == CROFTON_OK);
+                REQUIRE(world_closest_to_sphere(world.get(), center, 9, 1e3, nullptr, &closest) == CROFTON_OK);
             }
             CHECK(before > 0);
             CHECK(counter.allocations == before);

@@ -39,7 +39,7 @@ TEST_SUITE("capi/regions") {
         REQUIRE(crofton_world_update(world.get(), nullptr) == CROFTON_OK);
         const crofton_ray ray{{1e7 + 3.0, 0.0, 0.0}, {0.0, 0.0, -1.0}, 100.0};
         crofton_object_hit hit{};
-        REQUIRE(crofton_world_raycast(world.get(), &ray, 1, ~0u, &hit) == CROFTON_OK);
+        REQUIRE(crofton_world_raycast(world.get(), &ray, 1, nullptr, &hit) == CROFTON_OK);
         CHECK(hit.user == 6);
         CHECK(hit.t == 9.5);
         CHECK(hit.object.index >= CROFTON_FIRST_REGION_INDEX);
@@ -69,7 +69,7 @@ TEST_SUITE("capi/regions") {
         REQUIRE(crofton_world_set(world.get(), object, CROFTON_SET_HIDDEN, &description) == CROFTON_OK);
         CHECK(crofton_world_remove(world.get(), object) == CROFTON_UNSUPPORTED);
         REQUIRE(crofton_world_update(world.get(), nullptr) == CROFTON_OK);
-        REQUIRE(crofton_world_raycast(world.get(), &ray, 1, ~0u, &hit) == CROFTON_OK);
+        REQUIRE(crofton_world_raycast(world.get(), &ray, 1, nullptr, &hit) == CROFTON_OK);
         CHECK(hit.object.index == CROFTON_NONE);
         REQUIRE(crofton_world_detach(world.get(), attached) == CROFTON_OK);
         CHECK(crofton_world_detach(world.get(), attached) == CROFTON_STALE_HANDLE);
@@ -103,7 +103,8 @@ TEST_SUITE("capi/regions") {
         CHECK(pairs[0].second.user == 5);
         const crofton_ray ray{{0.0, 0.0, 5.0}, {0.0, 0.0, -1.0}, 100.0};
         crofton_object_hit hit{};
-        REQUIRE(crofton_world_raycast(world.get(), &ray, 1, 2u, &hit) == CROFTON_OK);
+        const crofton_query_filter filter = in_layers(2);
+        REQUIRE(crofton_world_raycast(world.get(), &ray, 1, &filter, &hit) == CROFTON_OK);
         CHECK(hit.t == 4.5);
 
         crofton_region* none = nullptr;
@@ -163,7 +164,7 @@ TEST_SUITE("capi/regions") {
         const auto hit_at = [&](double x, double y) {
             const crofton_ray ray{{x, y, 0.0}, {0.0, 0.0, -1.0}, 100.0};
             crofton_object_hit hit{};
-            REQUIRE(crofton_world_raycast(world.get(), &ray, 1, ~0u, &hit) == CROFTON_OK);
+            REQUIRE(crofton_world_raycast(world.get(), &ray, 1, nullptr, &hit) == CROFTON_OK);
             return hit;
         };
         CHECK(hit_at(0.0, 0.0).user == 1);

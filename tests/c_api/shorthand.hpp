@@ -99,38 +99,44 @@ inline crofton_query_shape capsule_shape(const double begin[3], const double end
     std::copy_n(end, 3, probe.end);
     return probe;
 }
+inline crofton_query_filter in_layers(std::uint32_t layers) {
+    crofton_query_filter filter = crofton_default_query_filter();
+    filter.layers = layers;
+    return filter;
+}
 template <class Given>
-crofton_status world_overlap(const crofton_world* world, const Given* given, std::uint32_t layers,
+crofton_status world_overlap(const crofton_world* world, const Given* given, const crofton_query_filter* filter,
                              crofton_found* found) {
     const crofton_query_shape probe = given ? shape_of(*given) : crofton_query_shape{};
-    return crofton_world_overlap(world, given ? &probe : nullptr, layers, found);
+    return crofton_world_overlap(world, given ? &probe : nullptr, filter, found);
 }
 inline crofton_status world_overlap_sphere(const crofton_world* world, const double center[3], double radius,
-                                           std::uint32_t layers, crofton_found* found) {
+                                           const crofton_query_filter* filter, crofton_found* found) {
     const crofton_query_shape probe = sphere_shape(center, radius);
-    return crofton_world_overlap(world, &probe, layers, found);
+    return crofton_world_overlap(world, &probe, filter, found);
 }
 inline crofton_status world_overlap_capsule(const crofton_world* world, const double begin[3], const double end[3],
-                                            double radius, std::uint32_t layers, crofton_found* found) {
+                                            double radius, const crofton_query_filter* filter, crofton_found* found) {
     const crofton_query_shape probe = capsule_shape(begin, end, radius);
-    return crofton_world_overlap(world, &probe, layers, found);
+    return crofton_world_overlap(world, &probe, filter, found);
 }
 template <class Given>
-crofton_status world_closest(const crofton_world* world, const Given* given, double most, std::uint32_t layers,
-                             crofton_closest_object* closest) {
+crofton_status world_closest(const crofton_world* world, const Given* given, double most,
+                             const crofton_query_filter* filter, crofton_closest_object* closest) {
     const crofton_query_shape probe = given ? shape_of(*given) : crofton_query_shape{};
-    return crofton_world_closest(world, given ? &probe : nullptr, most, layers, closest);
+    return crofton_world_closest(world, given ? &probe : nullptr, most, filter, closest);
 }
 inline crofton_status world_closest_to_sphere(const crofton_world* world, const double center[3], double radius,
-                                              double most, std::uint32_t layers, crofton_closest_object* closest) {
+                                              double most, const crofton_query_filter* filter,
+                                              crofton_closest_object* closest) {
     const crofton_query_shape probe = sphere_shape(center, radius);
-    return crofton_world_closest(world, &probe, most, layers, closest);
+    return crofton_world_closest(world, &probe, most, filter, closest);
 }
 inline crofton_status world_closest_to_capsule(const crofton_world* world, const double begin[3], const double end[3],
-                                               double radius, double most, std::uint32_t layers,
+                                               double radius, double most, const crofton_query_filter* filter,
                                                crofton_closest_object* closest) {
     const crofton_query_shape probe = capsule_shape(begin, end, radius);
-    return crofton_world_closest(world, &probe, most, layers, closest);
+    return crofton_world_closest(world, &probe, most, filter, closest);
 }
 
 inline crofton_status tree_within_box(const crofton_tree* tree, const crofton_box* box, std::uint32_t layers,

@@ -174,17 +174,18 @@ std::size_t compare_rays(const BothWorlds& both, NearMisses& random) {
         c_rays[i] = same_bytes<crofton_ray>(rays[i]);
     }
     const std::uint32_t layers = random.index(15) + 1;
-    REQUIRE(crofton_world_raycast(both.c.get(), c_rays.data(), rays.size(), layers, hits.data()) == CROFTON_OK);
+    const crofton_query_filter filter = in_layers(layers);
+    REQUIRE(crofton_world_raycast(both.c.get(), c_rays.data(), rays.size(), &filter, hits.data()) == CROFTON_OK);
     std::size_t total = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
-        const auto nearest = both.world.raycast(rays[i], layers);
+        const auto nearest = both.world.raycast(rays[i], {layers});
         CHECK((hits[i].object.index != CROFTON_NONE) == nearest.has_value());
         CHECK((nearest ? same_hit(both, hits[i], *nearest) : std::isinf(hits[i].t)));
         int any = 7;
-        REQUIRE(crofton_world_raycast_any(both.c.get(), &c_rays[i], layers, &any) == CROFTON_OK);
+        REQUIRE(crofton_world_raycast_any(both.c.get(), &c_rays[i], &filter, &any) == CROFTON_OK);
         CHECK(any == (nearest ? 1 : 0));
-        REQUIRE(crofton_world_raycast_all(both.c.get(), &c_rays[i], layers, found.get()) == CROFTON_OK);
-        both.world.raycast_all(rays[i], expected, layers);
+        REQUIRE(crofton_world_raycast_all(both.c.get(), &c_rays[i], &filter, found.get()) == CROFTON_OK);
+        both.world.raycast_all(rays[i], expected, {layers});
         const crofton_object_hit* all = nullptr;
         std::size_t count = 0;
         REQUIRE(crofton_found_hits(found.get(), &all, &count) == CROFTON_OK);
@@ -225,25 +226,26 @@ void compare_shapes(const BothWorlds& both, NearMisses& random) {
     const Sphere sphere{box.center, random.number(0.0, 6.0)};
     const collide::Capsule capsule{box.center, 10.0 * random.direction(), random.number(0.0, 3.0)};
     const std::uint32_t layers = random.index(15) + 1;
+    const crofton_query_filter filter = in_layers(layers);
     const double limit = random.index(2) ? 1.0 : std::numeric_limits<double>::infinity();
     auto closest = sized<crofton_closest_object>();
-    REQUIRE(world_overlap(c, &c_box, layers, found.get()) == CROFTON_OK);
-    both.world.overlap(box, expected, layers);
+    REQUIRE(world_overlap(c, &c_box, &filter, found.get()) == CROFTON_OK);
+    both.world.overlap(box, expected, {layers});
     compare_found(both, found, expected);
-    REQUIRE(world_overlap_sphere(c, &sphere.center.x, sphere.radius, layers, found.get()) == CROFTON_OK);
-    both.world.overlap(sphere, expected, layers);
+    REQUIRE(world_overlap_sphere(c, &sphere.center.x, sphere.radius, &filter, found.get()) == CROFTON_OK);
+    both.world.overlap(sphere, expected, {layers});
     compare_found(both, found, expected);
-    REQUIRE(world_overlap_capsule(c, &capsule.begin.x, &capsule.end.x, capsule.radius, layers, found.get()) ==
+    REQUIRE(world_overlap_capsule(c, &capsule.begin.x, &capsule.end.x, capsule.radius, &filter, found.get()) ==
             CROFTON_OK);
-    both.world.overlap(capsule, expected, layers);
+    both.world.overlap(capsule, expected, {layers});
     compare_found(both, found, expected);
-    REQUIRE(world_closest(c, &c_box, limit, layers, &closest) == CROFTON_OK);
-    compare_closest(both, closest, both.world.closest(box, limit, layers));
-    REQUIRE(world_closest_to_sphere(c, &sphere.center.x, sphere.radius, limit, layers, &closest) == CROFTON_OK);
-    compare_closest(both, closest, both.world.closest(sphere, limit, layers));
-    REQUIRE(world_closest_to_capsule(c, &capsule.begin.x, &capsule.end.x, capsule.radius, limit, layers, &closest) ==
+    REQUIRE(world_closest(c, &c_box, limit, &filter, &closest) == CROFTON_OK);
+    compare_closest(both, closest, both.world.closest(box, limit, {layers}));
+    REQUIRE(world_closest_to_sphere(c, &sphere.center.x, sphere.radius, limit, &filter, &closest) == CROFTON_OK);
+    compare_closest(both, closest, both.world.closest(sphere, limit, {layers}));
+    REQUIRE(world_closest_to_capsule(c, &capsule.begin.x, &capsule.end.x, capsule.radius, limit, &filter, &closest) ==
             CROFTON_OK);
-    compare_closest(both, closest, both.world.closest(capsule, limit, layers));
+    compare_closest(both, closest, both.world.closest(capsule, limit, {layers}));
 }
 
 void compare_statistics(const BothWorlds& both) {

@@ -25,7 +25,7 @@ TEST_SUITE("capi/world members") {
             }
             const Found found = make_found();
             const double center[3] = {0, 0, 150};
-            REQUIRE(world_overlap_sphere(world.get(), center, 10.0, ~0u, found.get()) == CROFTON_OK);
+            REQUIRE(world_overlap_sphere(world.get(), center, 10.0, nullptr, found.get()) == CROFTON_OK);
             const crofton_object_ref* met = nullptr;
             std::size_t count = 0;
             REQUIRE(crofton_found_objects(found.get(), &met, &count) == CROFTON_OK);
@@ -48,9 +48,9 @@ TEST_SUITE("capi/world members") {
         CHECK(crofton_world_set_boxes(small.world.get(), &small.box, 0, shifted, 0, 1) == CROFTON_INVALID_ARGUMENT);
         CHECK(mentions(crofton_last_error(), "not aligned"));
         const double center[3] = {0, 0, -5};
-        CHECK(world_overlap_sphere(small.world.get(), center, kNotANumber, ~0u, small.found.get()) ==
+        CHECK(world_overlap_sphere(small.world.get(), center, kNotANumber, nullptr, small.found.get()) ==
               CROFTON_NON_FINITE);
-        CHECK(world_overlap_sphere(small.world.get(), center, -1.0, ~0u, small.found.get()) ==
+        CHECK(world_overlap_sphere(small.world.get(), center, -1.0, nullptr, small.found.get()) ==
               CROFTON_INVALID_ARGUMENT);
         crofton_box stored{};
         REQUIRE(world_get_box(small.world.get(), small.box, &stored) == CROFTON_OK);

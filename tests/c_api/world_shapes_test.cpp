@@ -155,24 +155,24 @@ TEST_SUITE("capi/world shapes") {
         const crofton_placed high{probe.get(), &above}, low{probe.get(), &beside};
         const crofton_object_ref* objects = nullptr;
         std::size_t count = 9;
-        REQUIRE(world_overlap(s.world.get(), &high, ~0u, found.get()) == CROFTON_OK);
+        REQUIRE(world_overlap(s.world.get(), &high, nullptr, found.get()) == CROFTON_OK);
         REQUIRE(crofton_found_objects(found.get(), &objects, &count) == CROFTON_OK);
         CHECK(count == 0);
         // It meets the slab and the crate's box, but not the crate's shape.
-        REQUIRE(world_overlap(s.world.get(), &low, ~0u, found.get()) == CROFTON_OK);
+        REQUIRE(world_overlap(s.world.get(), &low, nullptr, found.get()) == CROFTON_OK);
         REQUIRE(crofton_found_objects(found.get(), &objects, &count) == CROFTON_OK);
         REQUIRE(count == 1);
         CHECK(objects[0].user == 5);
         auto closest = sized<crofton_closest_object>();
-        REQUIRE(world_closest(s.world.get(), &high, 9.0, ~0u, &closest) == CROFTON_OK);
+        REQUIRE(world_closest(s.world.get(), &high, 9.0, nullptr, &closest) == CROFTON_OK);
         CHECK(closest.user == 6);
         CHECK(closest.distance == doctest::Approx(5.0 - 0.25 - 1.99));
         CHECK(closest.on_object[1] == doctest::Approx(1.99));
-        REQUIRE(world_closest(s.world.get(), &high, 1.0, ~0u, &closest) == CROFTON_OK);
+        REQUIRE(world_closest(s.world.get(), &high, 1.0, nullptr, &closest) == CROFTON_OK);
         CHECK(closest.object.index == CROFTON_NONE);
         const crofton_motion fall{{0, -10, 0}, {0, 0, 0}, {0, 0, 0}};
         auto hit = sized<crofton_shape_hit>();
-        REQUIRE(crofton_world_cast(s.world.get(), &high, &fall, nullptr, ~0u, &hit) == CROFTON_OK);
+        REQUIRE(crofton_world_cast(s.world.get(), &high, &fall, nullptr, nullptr, &hit) == CROFTON_OK);
         CHECK(hit.user == 6);
         CHECK(hit.result == CROFTON_CAST_HIT);
         CHECK(hit.time == doctest::Approx((5.0 - 0.25 - 1.99) / 10.0).epsilon(1e-5));
@@ -181,7 +181,7 @@ TEST_SUITE("capi/world shapes") {
         CHECK(hit.distance >= 0.0);
         CHECK(hit.distance < 1e-6);
         const crofton_motion rise{{0, 10, 0}, {0, 0, 0}, {0, 0, 0}};
-        REQUIRE(crofton_world_cast(s.world.get(), &high, &rise, nullptr, ~0u, &hit) == CROFTON_OK);
+        REQUIRE(crofton_world_cast(s.world.get(), &high, &rise, nullptr, nullptr, &hit) == CROFTON_OK);
         CHECK(hit.object.index == CROFTON_NONE);
         CHECK(std::isinf(hit.time));
     }
@@ -213,7 +213,7 @@ TEST_SUITE("capi/world shapes") {
                                      {{1e6, -4, 0}, {0, 2, 0}, kNoLimit},
                                      {{1e6, -1, 0}, {0, 2, 0}, kNoLimit}};
         crofton_object_hit hits[3] = {};
-        REQUIRE(crofton_world_raycast(world.get(), rays, 3, ~0u, hits) == CROFTON_OK);
+        REQUIRE(crofton_world_raycast(world.get(), rays, 3, nullptr, hits) == CROFTON_OK);
         const double expected[3] = {2.0, 1.125, 0.0};
         for (int i = 0; i < 3; ++i) {
             CHECK(hits[i].object.index == (i == 0 ? ground.index : resting.index));
@@ -236,10 +236,10 @@ TEST_SUITE("capi/world shapes") {
         const crofton_placed placed{half.get(), &here};
         const Found found = make_found();
         auto hit = sized<crofton_shape_hit>();
-        CHECK(world_overlap(s.world.get(), &placed, ~0u, found.get()) == CROFTON_UNSUPPORTED);
-        CHECK(crofton_world_cast(s.world.get(), &placed, nullptr, nullptr, ~0u, &hit) == CROFTON_UNSUPPORTED);
+        CHECK(world_overlap(s.world.get(), &placed, nullptr, found.get()) == CROFTON_UNSUPPORTED);
+        CHECK(crofton_world_cast(s.world.get(), &placed, nullptr, nullptr, nullptr, &hit) == CROFTON_UNSUPPORTED);
         auto closest = sized<crofton_closest_object>();
-        CHECK(world_closest(s.world.get(), &placed, 1.0, ~0u, &closest) == CROFTON_UNSUPPORTED);
+        CHECK(world_closest(s.world.get(), &placed, 1.0, nullptr, &closest) == CROFTON_UNSUPPORTED);
         REQUIRE(crofton_world_remove(s.world.get(), s.crate) == CROFTON_OK);
         const ShapeHandle box = crate_of(1);
         CHECK(world_set_shape(s.world.get(), s.crate, box.get()) == CROFTON_STALE_HANDLE);

@@ -31,7 +31,7 @@ TEST_SUITE("capi/world structs") {
             CHECK(crofton_world_get_statistics(s.world.get(), &statistics) == CROFTON_WRONG_SIZE);
             CHECK(crofton_world_add(s.world.get(), &description, &object) == CROFTON_WRONG_SIZE);
             CHECK(crofton_world_add_mesh(s.world.get(), &data, &mesh) == CROFTON_WRONG_SIZE);
-            CHECK(world_closest_to_sphere(s.world.get(), center, 1, 1, ~0u, &closest) == CROFTON_WRONG_SIZE);
+            CHECK(world_closest_to_sphere(s.world.get(), center, 1, 1, nullptr, &closest) == CROFTON_WRONG_SIZE);
             CHECK(crofton_world_get_object(s.world.get(), s.box, &info) == CROFTON_WRONG_SIZE);
             CHECK(crofton_world_set(s.world.get(), s.box, CROFTON_SET_USER, &description) == CROFTON_WRONG_SIZE);
             CHECK(crofton_view_result_get_view(s.visible.get(), 0, &view) == CROFTON_WRONG_SIZE);

@@ -46,17 +46,17 @@ TEST_SUITE("capi/world") {
         CHECK(crofton_world_view(world, nullptr, 1, nullptr, s.in_views.get()) == bad);
         CHECK(crofton_view_result_ids(s.visible.get(), nullptr, &count, nullptr, nullptr) == bad);
         CHECK(crofton_view_result_ids(s.in_views.get(), nullptr, &count, nullptr, nullptr) == bad);
-        CHECK(crofton_world_raycast(world, nullptr, 1, ~0u, &hit) == bad);
-        CHECK(crofton_world_raycast(world, &ray, 1, ~0u, nullptr) == bad);
-        CHECK(crofton_world_raycast_any(world, &ray, ~0u, nullptr) == bad);
-        CHECK(crofton_world_raycast_all(world, nullptr, ~0u, s.found.get()) == bad);
-        CHECK(crofton_world_overlap(world, nullptr, ~0u, s.found.get()) == bad);
+        CHECK(crofton_world_raycast(world, nullptr, 1, nullptr, &hit) == bad);
+        CHECK(crofton_world_raycast(world, &ray, 1, nullptr, nullptr) == bad);
+        CHECK(crofton_world_raycast_any(world, &ray, nullptr, nullptr) == bad);
+        CHECK(crofton_world_raycast_all(world, nullptr, nullptr, s.found.get()) == bad);
+        CHECK(crofton_world_overlap(world, nullptr, nullptr, s.found.get()) == bad);
         crofton_query_shape no_shape{};
         no_shape.kind = CROFTON_QUERY_SHAPE_SHAPE + 1;
-        CHECK(crofton_world_overlap(world, &no_shape, ~0u, s.found.get()) == bad);
-        CHECK(crofton_world_closest(world, nullptr, 1.0, ~0u, &closest) == bad);
-        CHECK(crofton_world_closest(world, &no_shape, 1.0, ~0u, &closest) == bad);
-        CHECK(world_closest(world, &box, 1.0, ~0u, nullptr) == bad);
+        CHECK(crofton_world_overlap(world, &no_shape, nullptr, s.found.get()) == bad);
+        CHECK(crofton_world_closest(world, nullptr, 1.0, nullptr, &closest) == bad);
+        CHECK(crofton_world_closest(world, &no_shape, 1.0, nullptr, &closest) == bad);
+        CHECK(world_closest(world, &box, 1.0, nullptr, nullptr) == bad);
         CHECK(crofton_world_pairs(world, nullptr, &count) == bad);
         CHECK(crofton_world_contacts(world, nullptr, &count) == bad);
         CHECK(crofton_found_objects(s.found.get(), nullptr, &count) == bad);
@@ -72,13 +72,54 @@ TEST_SUITE("capi/world") {
         CHECK(crofton_world_destroy(reinterpret_cast<crofton_world*>(s.found.get())) == CROFTON_BAD_HANDLE);
         CHECK(world_set_bound(nullptr, s.box, &bound) == CROFTON_BAD_HANDLE);
         CHECK(look(world, view, nullptr) == CROFTON_BAD_HANDLE);
-        CHECK(world_overlap(world, &box, ~0u, nullptr) == CROFTON_BAD_HANDLE);
+        CHECK(world_overlap(world, &box, nullptr, nullptr) == CROFTON_BAD_HANDLE);
         CHECK(world_contains(nullptr, s.box, &flag) == CROFTON_BAD_HANDLE);
         // What was never viewed, lists no world's objects.
         CHECK(crofton_view_result_list(s.visible.get(), world, 0, refs, nullptr, 1) == bad);
         CHECK(crofton_world_set_boxes(world, nullptr, 0, nullptr, 0, 0) == CROFTON_OK);
-        CHECK(crofton_world_raycast(world, nullptr, 0, ~0u, nullptr) == CROFTON_OK);
+        CHECK(crofton_world_raycast(world, nullptr, 0, nullptr, nullptr) == CROFTON_OK);
         CHECK(crofton_world_view(world, nullptr, 0, nullptr, s.in_views.get()) == CROFTON_OK);
+    }
+
+    TEST_CASE("a filter ignores its objects, and is an error if it cannot be read") {
+        const WorldHandle world = make_world();
+        const crofton_object near = add_bound(world, box_bound(box_at(2, 0, 0))),
+                             far = add_bound(world, box_bound(box_at(9, 0, 0)));
+        update(world);
+        const crofton_ray ray{{-5, 0, 0}, {1, 0, 0}, kNoLimit};
+        crofton_object_hit hit;
+        crofton_query_filter filter = crofton_default_query_filter();
+        CHECK(filter.layers == ~0u);
+        const auto cast = [&] { return crofton_world_raycast(world.get(), &ray, 1, &filter, &hit); };
+        REQUIRE(cast() == CROFTON_OK);
+        CHECK(hit.object.index == near.index);
+        filter.ignored = &near;
+        filter.ignored_count = 1;
+        REQUIRE(cast() == CROFTON_OK);
+        CHECK(hit.object.index == far.index);
+        const crofton_object both[] = {near, far};
+        filter.ignored = both;
+        filter.ignored_count = 2;
+        int any = 1;
+        REQUIRE(crofton_world_raycast_any(world.get(), &ray, &filter, &any) == CROFTON_OK);
+        CHECK(any == 0);
+        auto closest = sized<crofton_closest_object>();
+        const double center[3] = {0, 0, 0};
+        REQUIRE(world_closest_to_sphere(world.get(), center, 1, kNoLimit, &filter, &closest) == CROFTON_OK);
+        CHECK(closest.object.index == CROFTON_NONE);
+        filter.ignored = nullptr;
+        CHECK(cast() == CROFTON_INVALID_ARGUMENT);
+        filter.ignored = both;
+        filter.ignored_count = SIZE_MAX;
+        CHECK(cast() == CROFTON_OUT_OF_RANGE);
+        filter.ignored_count = 0;
+        filter.size = 3;
+        CHECK(cast() == CROFTON_WRONG_SIZE);
+        // A filter of a caller that knows no list ends after the layers.
+        filter.size = offsetof(crofton_query_filter, ignored);
+        filter.ignored_count = 2;
+        REQUIRE(cast() == CROFTON_OK);
+        CHECK(hit.object.index == near.index);
     }
 
     TEST_CASE("each option does what it says") {
@@ -254,22 +295,23 @@ TEST_SUITE("capi/world") {
             CHECK(try_add(s.world, aligned, object) != CROFTON_OK);
             const crofton_ray rays[2] = {{{0, 0, 0}, {0, 0, -1}, 1}, {{0, 0, 0}, {0, number, 0}, 1}};
             crofton_object_hit hits[2] = {};
-            CHECK(crofton_world_raycast(world, rays, 2, ~0u, hits) == CROFTON_NON_FINITE);
+            CHECK(crofton_world_raycast(world, rays, 2, nullptr, hits) == CROFTON_NON_FINITE);
             CHECK(crofton_last_error_item() == 1);
-            CHECK(crofton_world_raycast_all(world, &rays[1], ~0u, s.found.get()) == CROFTON_NON_FINITE);
-            CHECK(world_overlap(world, &box, ~0u, s.found.get()) == CROFTON_NON_FINITE);
-            CHECK(world_overlap_sphere(world, box.center, 1, ~0u, s.found.get()) == CROFTON_NON_FINITE);
-            CHECK(world_overlap_capsule(world, place.linear, box.center, 1, ~0u, s.found.get()) == CROFTON_NON_FINITE);
+            CHECK(crofton_world_raycast_all(world, &rays[1], nullptr, s.found.get()) == CROFTON_NON_FINITE);
+            CHECK(world_overlap(world, &box, nullptr, s.found.get()) == CROFTON_NON_FINITE);
+            CHECK(world_overlap_sphere(world, box.center, 1, nullptr, s.found.get()) == CROFTON_NON_FINITE);
+            CHECK(world_overlap_capsule(world, place.linear, box.center, 1, nullptr, s.found.get()) ==
+                  CROFTON_NON_FINITE);
             crofton_camera camera = crofton_default_camera();
             camera.position[0] = number;
             CHECK(look(world, camera, s.visible.get()) != CROFTON_OK);
         }
         const double center[3] = {};
         auto closest = sized<crofton_closest_object>();
-        CHECK(world_closest_to_sphere(world, center, 1, kNotANumber, ~0u, &closest) == CROFTON_NON_FINITE);
-        CHECK(world_closest_to_sphere(world, center, 1, -1, ~0u, &closest) == CROFTON_INVALID_ARGUMENT);
-        CHECK(world_closest_to_sphere(world, center, -1, 1, ~0u, &closest) == CROFTON_INVALID_ARGUMENT);
-        CHECK(world_closest_to_sphere(world, center, 1, kNoLimit, ~0u, &closest) == CROFTON_OK);
+        CHECK(world_closest_to_sphere(world, center, 1, kNotANumber, nullptr, &closest) == CROFTON_NON_FINITE);
+        CHECK(world_closest_to_sphere(world, center, 1, -1, nullptr, &closest) == CROFTON_INVALID_ARGUMENT);
+        CHECK(world_closest_to_sphere(world, center, -1, 1, nullptr, &closest) == CROFTON_INVALID_ARGUMENT);
+        CHECK(world_closest_to_sphere(world, center, 1, kNoLimit, nullptr, &closest) == CROFTON_OK);
         CHECK(closest.distance == doctest::Approx(3.5));  // the box's face is at z = −4.5
         CHECK(object.index == 77);
         std::size_t count = 0;
@@ -325,12 +367,12 @@ TEST_SUITE("capi/world") {
             REQUIRE(crofton_found_hits(s.found.get(), &hits, &hit_count) == CROFTON_OK);
         };
         for (int i = 0; i < 2; ++i) {
-            REQUIRE(crofton_world_raycast_all(s.world.get(), &ray, ~0u, s.found.get()) == CROFTON_OK);
+            REQUIRE(crofton_world_raycast_all(s.world.get(), &ray, nullptr, s.found.get()) == CROFTON_OK);
             count();
             CHECK(object_count == 0);
             REQUIRE(hit_count == 1);
             CHECK(hits[0].t == doctest::Approx(4.5));
-            REQUIRE(world_overlap(s.world.get(), &box, ~0u, s.found.get()) == CROFTON_OK);
+            REQUIRE(world_overlap(s.world.get(), &box, nullptr, s.found.get()) == CROFTON_OK);
             count();
             CHECK(hit_count == 0);
             REQUIRE(object_count == 1);

@@ -170,6 +170,7 @@ const std::set<std::string> kWithoutHandle = {
     "default_object_description",
     "default_occlusion_options",
     "default_picture_view",
+    "default_query_filter",
     "default_region_object",
     "default_region_options",
     "default_shadow_receivers",

@@ -186,7 +186,8 @@ class Sequence {
     void check_overlap() {
         const crofton_box box = c_box(in_.box());
         const std::uint32_t layers = in_.layers();
-        demand(world_overlap(world_, &box, layers, found_) == CROFTON_OK, "an overlap");
+        const crofton_query_filter filter = in_layers(layers);
+        demand(world_overlap(world_, &box, &filter, found_) == CROFTON_OK, "an overlap");
         const crofton_object_ref* list = nullptr;
         std::size_t count = 0;
         demand(crofton_found_objects(found_, &list, &count) == CROFTON_OK, "what overlaps");

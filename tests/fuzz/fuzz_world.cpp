@@ -62,7 +62,7 @@ void check_queries(fuzz::Shapes& in, const World& world, const oracle::Model& mo
     const std::uint32_t layers = in.layers();
     const Obb box = in.box();
     Vector<ObjectRef> found;
-    world.overlap(box, found, layers);
+    world.overlap(box, found, {layers});
     demand(ids_of(found) == model.overlapping(box, layers), "what a box overlaps");
     if (!is_plain(model)) return;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
@@ -71,15 +71,15 @@ void check_queries(fuzz::Shapes& in, const World& world, const oracle::Model& mo
     const Ray ray = in.ray();
     const auto expected = model.along(ray, layers);
     Vector<ObjectHit> hits;
-    world.raycast_all(ray, hits, layers);
+    world.raycast_all(ray, hits, {layers});
     demand(hits.size() == expected.size(), "what a ray meets");
     for (std::size_t i = 0; i < hits.size(); ++i)
         demand(hits[i].t == expected[i].first && hits[i].object.index == expected[i].second, "the order along a ray");
-    const auto first = world.raycast(ray, layers);
-    demand(first.has_value() == !expected.empty() && world.raycast_any(ray, layers) == !expected.empty(), "a ray");
+    const auto first = world.raycast(ray, {layers});
+    demand(first.has_value() == !expected.empty() && world.raycast_any(ray, {layers}) == !expected.empty(), "a ray");
     if (first) demand(first->t == expected[0].first && first->object.index == expected[0].second, "the first on a ray");
     const double limit = std::fabs(in.grid()), least = model.distance_to(box, layers);
-    const auto closest = world.closest(box, limit, layers);
+    const auto closest = world.closest(box, limit, {layers});
     const double size = 1e-7 * (40.0 + least + glm::length(box.center));
     if (least < limit - size) demand(closest.has_value(), "what is close");
     if (least > limit + size) demand(!closest, "what is not close");

@@ -44,6 +44,14 @@ namespace Crofton {
             return data;
         }
         internal Native.QueryShapeData Probe(Placed placed) { return new Native.QueryShapeData { Kind = Native.QueryShapeShape, Shape = Of(placed) }; }
+        // Null stands for a filter of all objects.
+        internal Native.QueryFilterData Of(QueryFilter filter) {
+            var data = new Native.QueryFilterData { Size = Native.SizeOf<Native.QueryFilterData>(), Layers = filter == null ? World.AllLayers : filter.Layers };
+            if (filter == null || filter.Ignored == null) return data;
+            data.Ignored = Pinned(filter.Ignored);
+            data.IgnoredCount = (UIntPtr)filter.Ignored.Length;
+            return data;
+        }
         internal Native.ViewRequestData Of(ViewRequest request) {
             Native.ViewRequestData data = Native.crofton_default_view_request();
             data.Layers = request.Layers;

@@ -229,6 +229,14 @@ namespace Crofton {
         }
 
         [StructLayout(LayoutKind.Sequential)]
+        internal struct QueryFilterData {
+            public UIntPtr Size;
+            public uint Layers;
+            public IntPtr Ignored;
+            public UIntPtr IgnoredCount;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
         internal struct CastOptionsData {
             public UIntPtr Size;
             public double Duration, Tolerance;
@@ -502,7 +510,7 @@ namespace Crofton {
         [DllImport(Library)] internal static extern int crofton_world_get_statistics(WorldHandle world, ref WorldStatisticsData statistics);
         [DllImport(Library)] internal static extern int crofton_world_get_object(WorldHandle world, ObjectHandle handle, ref ObjectInfo info);
         [DllImport(Library)] internal static extern int crofton_world_get_mesh(WorldHandle world, MeshHandle mesh, ref MeshInfo info);
-        [DllImport(Library)] internal static extern int crofton_world_cast(WorldHandle world, ref PlacedData probe, ref Motion motion, ref CastOptionsData options, uint layers, ref ShapeHitData hit);
+        [DllImport(Library)] internal static extern int crofton_world_cast(WorldHandle world, ref PlacedData probe, ref Motion motion, ref CastOptionsData options, ref QueryFilterData filter, ref ShapeHitData hit);
         [DllImport(Library)] internal static extern int crofton_world_set_occluders(WorldHandle world, MeshHandle mesh, OccluderData[] occluders, UIntPtr count);
         [DllImport(Library)] internal static extern int crofton_world_get_occluder(WorldHandle world, MeshHandle mesh, UIntPtr place, ref OccluderData occluder);
         [DllImport(Library)] internal static extern int crofton_view_result_occluders(VisibleHandle visible, WorldHandle world, ObjectHandle[] hidden, [Out] OccluderRef[] occluders, UIntPtr capacity, out UIntPtr count);
@@ -521,11 +529,11 @@ namespace Crofton {
         [DllImport(Library)] internal static extern int crofton_found_destroy(IntPtr found);
         [DllImport(Library)] internal static extern int crofton_found_objects(FoundHandle found, out IntPtr objects, out UIntPtr count);
         [DllImport(Library)] internal static extern int crofton_found_hits(FoundHandle found, out IntPtr hits, out UIntPtr count);
-        [DllImport(Library)] internal static extern int crofton_world_raycast(WorldHandle world, Ray[] rays, UIntPtr count, uint layers, [Out] ObjectHit[] hits);
-        [DllImport(Library)] internal static extern int crofton_world_raycast_any(WorldHandle world, ref Ray ray, uint layers, out int hit);
-        [DllImport(Library)] internal static extern int crofton_world_raycast_all(WorldHandle world, ref Ray ray, uint layers, FoundHandle found);
-        [DllImport(Library)] internal static extern int crofton_world_overlap(WorldHandle world, ref QueryShapeData shape, uint layers, FoundHandle found);
-        [DllImport(Library)] internal static extern int crofton_world_closest(WorldHandle world, ref QueryShapeData shape, double maxDistance, uint layers, ref ClosestData closest);
+        [DllImport(Library)] internal static extern int crofton_world_raycast(WorldHandle world, Ray[] rays, UIntPtr count, ref QueryFilterData filter, [Out] ObjectHit[] hits);
+        [DllImport(Library)] internal static extern int crofton_world_raycast_any(WorldHandle world, ref Ray ray, ref QueryFilterData filter, out int hit);
+        [DllImport(Library)] internal static extern int crofton_world_raycast_all(WorldHandle world, ref Ray ray, ref QueryFilterData filter, FoundHandle found);
+        [DllImport(Library)] internal static extern int crofton_world_overlap(WorldHandle world, ref QueryShapeData shape, ref QueryFilterData filter, FoundHandle found);
+        [DllImport(Library)] internal static extern int crofton_world_closest(WorldHandle world, ref QueryShapeData shape, double maxDistance, ref QueryFilterData filter, ref ClosestData closest);
         [DllImport(Library)] internal static extern int crofton_world_pairs(WorldHandle world, out IntPtr pairs, out UIntPtr count);
         [DllImport(Library)] internal static extern int crofton_world_contacts(WorldHandle world, out IntPtr contacts, out UIntPtr count);
     }

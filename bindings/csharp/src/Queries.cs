@@ -262,6 +262,17 @@ namespace Crofton {
         public static implicit operator ViewRequest(Frustum volume) { return volume == null ? null : new ViewRequest { Volume = volume }; }
     }
 
+    /// <summary>Limits rays, overlaps, nearest objects and casts to some of the objects. A layer mask converts to one.</summary>
+    public sealed class QueryFilter {
+        /// <summary>Finds objects that share a layer with this mask; all.</summary>
+        public uint Layers = World.AllLayers;
+        /// <summary>Finds none of these, for example the object that asks and what it carries; or null. Pass a few, and use layers for many.</summary>
+        public ObjectHandle[] Ignored;
+
+        /// <summary>Converts a layer mask.</summary>
+        public static implicit operator QueryFilter(uint layers) { return new QueryFilter { Layers = layers }; }
+    }
+
     public sealed partial class World {
         /// <summary>Lists the objects whose boxes a view sees, exactly: no visible box is left out. With Occlusion, also leaves
         /// out hidden objects. A Camera or a Frustum converts to a request for all layers.</summary>
@@ -294,58 +305,69 @@ namespace Crofton {
         }
 
         /// <summary>Returns the nearest hit of a ray with triangles of meshes, boxes and spheres.</summary>
-        public ObjectHit Raycast(Ray ray, uint layers = AllLayers) { return Raycast(new[] { ray }, layers)[0]; }
+        public ObjectHit Raycast(Ray ray, QueryFilter filter = null) { return Raycast(new[] { ray }, filter)[0]; }
         /// <summary>Returns the nearest hit of each ray.</summary>
-        public ObjectHit[] Raycast(Ray[] rays, uint layers = AllLayers) {
+        public ObjectHit[] Raycast(Ray[] rays, QueryFilter filter = null) {
             Library.NotNull(rays, "rays");
             var hits = new ObjectHit[rays.Length];
-            Library.Check(Native.crofton_world_raycast(Handle, rays, (UIntPtr)rays.Length, layers, hits));
+            using (var memory = new Copies()) {
+                var given = memory.Of(filter);
+                Library.Check(Native.crofton_world_raycast(Handle, rays, (UIntPtr)rays.Length, ref given, hits));
+            }
             return hits;
         }
         /// <summary>Tests whether the ray hits anything; faster than Raycast.</summary>
-        public bool RaycastAny(Ray ray, uint layers = AllLayers) {
+        public bool RaycastAny(Ray ray, QueryFilter filter = null) {
             int hit;
-            Library.Check(Native.crofton_world_raycast_any(Handle, ref ray, layers, out hit));
+            using (var memory = new Copies()) {
+                var given = memory.Of(filter);
+                Library.Check(Native.crofton_world_raycast_any(Handle, ref ray, ref given, out hit));
+            }
             return hit != 0;
         }
         /// <summary>Lists the nearest hit of each object that the ray hits, in order of T, then of index.</summary>
-        public ObjectHit[] RaycastAll(Ray ray, uint layers = AllLayers) {
+        public ObjectHit[] RaycastAll(Ray ray, QueryFilter filter = null) {
+            using (var memory = new Copies())
             using (var found = Find()) {
                 IntPtr hits;
                 UIntPtr count;
-                Library.Check(Native.crofton_world_raycast_all(Handle, ref ray, layers, found));
+                var given = memory.Of(filter);
+                Library.Check(Native.crofton_world_raycast_all(Handle, ref ray, ref given, found));
                 Library.Check(Native.crofton_found_hits(found, out hits, out count));
                 return Library.ToArray<ObjectHit>(hits, count);
             }
         }
 
         /// <summary>The objects that overlap a box, by index: their shapes, triangles, spheres or boxes.</summary>
-        public ObjectRef[] Overlap(Obb box, uint layers = AllLayers) {
-            return Overlap(new Native.QueryShapeData { Kind = Native.QueryShapeBox, Box = box }, layers);
+        public ObjectRef[] Overlap(Obb box, QueryFilter filter = null) {
+            return Overlap(new Native.QueryShapeData { Kind = Native.QueryShapeBox, Box = box }, filter);
         }
         /// <summary>The objects that overlap a sphere.</summary>
-        public ObjectRef[] OverlapSphere(Vector3 center, double radius, uint layers = AllLayers) {
-            return Overlap(new Native.QueryShapeData { Kind = Native.QueryShapeSphere, Begin = center, Radius = radius }, layers);
+        public ObjectRef[] OverlapSphere(Vector3 center, double radius, QueryFilter filter = null) {
+            return Overlap(new Native.QueryShapeData { Kind = Native.QueryShapeSphere, Begin = center, Radius = radius }, filter);
         }
         /// <summary>The objects that overlap a capsule: all points no farther than the radius from a segment.</summary>
-        public ObjectRef[] OverlapCapsule(Vector3 begin, Vector3 end, double radius, uint layers = AllLayers) {
-            return Overlap(new Native.QueryShapeData { Kind = Native.QueryShapeCapsule, Begin = begin, End = end, Radius = radius }, layers);
+        public ObjectRef[] OverlapCapsule(Vector3 begin, Vector3 end, double radius, QueryFilter filter = null) {
+            return Overlap(new Native.QueryShapeData { Kind = Native.QueryShapeCapsule, Begin = begin, End = end, Radius = radius }, filter);
         }
         /// <summary>The object nearest to a box, no farther than a distance; null where there is none.</summary>
-        public Closest? Closest(Obb box, double maxDistance = double.PositiveInfinity, uint layers = AllLayers) {
-            return Closest(new Native.QueryShapeData { Kind = Native.QueryShapeBox, Box = box }, maxDistance, layers);
+        public Closest? Closest(Obb box, double maxDistance = double.PositiveInfinity, QueryFilter filter = null) {
+            return Closest(new Native.QueryShapeData { Kind = Native.QueryShapeBox, Box = box }, maxDistance, filter);
         }
         /// <summary>The object nearest to a sphere.</summary>
-        public Closest? ClosestToSphere(Vector3 center, double radius, double maxDistance = double.PositiveInfinity, uint layers = AllLayers) {
-            return Closest(new Native.QueryShapeData { Kind = Native.QueryShapeSphere, Begin = center, Radius = radius }, maxDistance, layers);
+        public Closest? ClosestToSphere(Vector3 center, double radius, double maxDistance = double.PositiveInfinity, QueryFilter filter = null) {
+            return Closest(new Native.QueryShapeData { Kind = Native.QueryShapeSphere, Begin = center, Radius = radius }, maxDistance, filter);
         }
         /// <summary>The object nearest to a capsule.</summary>
-        public Closest? ClosestToCapsule(Vector3 begin, Vector3 end, double radius, double maxDistance = double.PositiveInfinity, uint layers = AllLayers) {
-            return Closest(new Native.QueryShapeData { Kind = Native.QueryShapeCapsule, Begin = begin, End = end, Radius = radius }, maxDistance, layers);
+        public Closest? ClosestToCapsule(Vector3 begin, Vector3 end, double radius, double maxDistance = double.PositiveInfinity, QueryFilter filter = null) {
+            return Closest(new Native.QueryShapeData { Kind = Native.QueryShapeCapsule, Begin = begin, End = end, Radius = radius }, maxDistance, filter);
         }
-        Closest? Closest(Native.QueryShapeData shape, double maxDistance, uint layers) {
+        Closest? Closest(Native.QueryShapeData shape, double maxDistance, QueryFilter filter) {
             var data = new Native.ClosestData { Size = Native.SizeOf<Native.ClosestData>() };
-            Library.Check(Native.crofton_world_closest(Handle, ref shape, maxDistance, layers, ref data));
+            using (var memory = new Copies()) {
+                var given = memory.Of(filter);
+                Library.Check(Native.crofton_world_closest(Handle, ref shape, maxDistance, ref given, ref data));
+            }
             if (data.Object.Index == uint.MaxValue) return null;
             return new Closest {
                 Object = data.Object, User = data.User, Distance = data.Distance, OnShape = data.OnShape, OnObject = data.OnObject
@@ -398,11 +420,13 @@ namespace Crofton {
             Library.Check(Native.crofton_found_create(out found));
             return found;
         }
-        ObjectRef[] Overlap(Native.QueryShapeData shape, uint layers) {
+        ObjectRef[] Overlap(Native.QueryShapeData shape, QueryFilter filter) {
+            using (var memory = new Copies())
             using (var found = Find()) {
                 IntPtr objects;
                 UIntPtr count;
-                Library.Check(Native.crofton_world_overlap(Handle, ref shape, layers, found));
+                var given = memory.Of(filter);
+                Library.Check(Native.crofton_world_overlap(Handle, ref shape, ref given, found));
                 Library.Check(Native.crofton_found_objects(found, out objects, out count));
                 return Library.ToArray<ObjectRef>(objects, count);
             }

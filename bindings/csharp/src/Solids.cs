@@ -305,20 +305,21 @@ namespace Crofton {
             }
         }
         /// <summary>The objects that overlap a shape other than a half-space.</summary>
-        public ObjectRef[] Overlap(Placed shape, uint layers = AllLayers) {
-            using (var memory = new Copies()) return Overlap(memory.Probe(shape), layers);
+        public ObjectRef[] Overlap(Placed shape, QueryFilter filter = null) {
+            using (var memory = new Copies()) return Overlap(memory.Probe(shape), filter);
         }
         /// <summary>The object nearest to a shape, no farther than a distance; null where there is none.</summary>
-        public Closest? Closest(Placed shape, double maxDistance = double.PositiveInfinity, uint layers = AllLayers) {
-            using (var memory = new Copies()) return Closest(memory.Probe(shape), maxDistance, layers);
+        public Closest? Closest(Placed shape, double maxDistance = double.PositiveInfinity, QueryFilter filter = null) {
+            using (var memory = new Copies()) return Closest(memory.Probe(shape), maxDistance, filter);
         }
         /// <summary>Finds the first object that a moving shape meets; the objects are at rest. Null where there is none.</summary>
-        public ShapeHit? Cast(Placed shape, Motion motion, CastOptions options = null, uint layers = AllLayers) {
+        public ShapeHit? Cast(Placed shape, Motion motion, CastOptions options = null, QueryFilter filter = null) {
             var given = CastOptions.Data(options);
             var data = new Native.ShapeHitData { Size = Native.SizeOf<Native.ShapeHitData>() };
             using (var memory = new Copies()) {
                 Native.PlacedData placed = memory.Of(shape);
-                Library.Check(Native.crofton_world_cast(Handle, ref placed, ref motion, ref given, layers, ref data));
+                Native.QueryFilterData accepted = memory.Of(filter);
+                Library.Check(Native.crofton_world_cast(Handle, ref placed, ref motion, ref given, ref accepted, ref data));
             }
             if (data.Object.Index == uint.MaxValue) return null;
             return new ShapeHit {

@@ -30,6 +30,22 @@ static class WorldTests {
             Expect.Equal(2, world.Count);
         }
     }
+    [Test] static void QueriesIgnoreObjects() {
+        ObjectHandle[] o;
+        using (var world = Row(3, out o))
+        using (var shape = Shape.Sphere(0.1f)) {
+            var ray = new Ray(new Vector3(-10, 0, -5), new Vector3(1, 0, 0));
+            var filter = new QueryFilter { Ignored = new[] { o[0] } };
+            Expect.Equal(o[1], world.Raycast(ray, filter).Object);
+            Expect.Equal(2, world.RaycastAll(ray, filter).Length);
+            Expect.True(!world.RaycastAny(ray, new QueryFilter { Ignored = o }));
+            Expect.True(world.RaycastAny(ray, new QueryFilter { Ignored = new ObjectHandle[0] }));
+            Expect.Equal(0, world.OverlapSphere(new Vector3(0, 0, -5), 0.1, filter).Length);
+            Expect.Equal(o[1], world.ClosestToSphere(new Vector3(0, 0, -5), 0.1, double.PositiveInfinity, filter).Value.Object);
+            var motion = new Motion { Velocity = new Vector3(20, 0, 0) };
+            Expect.Equal(o[1], world.Cast(shape.At(Transform.At(-10, 0, -5)), motion, null, filter).Value.Object);
+        }
+    }
     [Test] static void AnObjectInsideAClosedMeshSaysSo() {
         using (var world = new World()) {
             MeshHandle mesh = world.AddMesh(Tetrahedron, Faces);

@@ -19,8 +19,26 @@ struct HitRecord {
     std::uint64_t user;
 };
 
+// A QueryFilter of `layers=` and `ignored=`: None, a handle, or several.
+class Filter {
+  public:
+    Filter(std::uint32_t layers, const py::handle& ignored) : layers_(layers) {
+        if (!ignored.is_none()) ignored_.emplace(ignored, "ignored");
+    }
+    Filter(const py::handle& layers, const py::handle& ignored)
+        : Filter(layers.is_none() ? ~0u : number_of<std::uint32_t>(layers, "layers"), ignored) {}
+    [[nodiscard]] QueryFilter get() const {
+        return {layers_, ignored_ ? ignored_->span() : std::span<const ObjectHandle>()};
+    }
+
+  private:
+    std::uint32_t layers_;
+    std::optional<Handles<ObjectHandle>> ignored_;
+};
+
 py::array raycast_many(const PyWorld& python_world, const py::handle& origins, const py::handle& directions,
-                       double max_t, std::uint32_t layers) {
+                       double max_t, std::uint32_t layers, const py::handle& ignored) {
+    const Filter filter(layers, ignored);
     const Points<3> from(origins, "origins"), along(directions, "directions");
     if (from.size() != along.size() && from.size() != 1)
         raise({ErrorCode::invalid_argument, kNoItem, "origins: as many as directions, or one, are expected"});
@@ -37,7 +55,7 @@ py::array raycast_many(const PyWorld& python_world, const py::handle& origins, c
             if (i % 256 == 255 && interrupt.is_pending()) return {};
             const Ray ray{at(from, i), at(along, i), max_t};
             if (auto valid = validate(ray, i); !valid) return valid;
-            const auto hit = world.raycast(ray, layers);
+            const auto hit = world.raycast(ray, filter.get());
             out[i] = {};
             out[i].t = std::numeric_limits<double>::infinity();
             out[i].index = kNoIndex;
@@ -65,9 +83,6 @@ Ray ray_of(const py::handle& origin, const py::handle& direction, double max_t) 
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-std::uint32_t layers_of(const py::handle& given) {
-    return given.is_none() ? ~0u : number_of<std::uint32_t>(given, "layers");
-}
 py::object borrowed(const py::handle& given) {
     return py::reinterpret_borrow<py::object>(given);
 }
@@ -98,12 +113,12 @@ void visit_probe(const PyWorld& world, const Probe& probe, F&& f) {
 
 PyObject* overlap_method(PyObject* self, PyObject* const* values, Py_ssize_t count, PyObject* keywords) {
     return call_method<PyWorld>(self, [&](const PyWorld& world) {
-        constexpr std::array kNames = {"box", "sphere", "capsule", "shape", "pose", "layers"};
+        constexpr std::array kNames = {"box", "sphere", "capsule", "shape", "pose", "layers", "ignored"};
         const auto a = arguments_of("overlap", kNames, 0, values, count, keywords);
-        const std::uint32_t layers = layers_of(a[5]);
+        const Filter filter(a[5], a[6]);
         Vector<ObjectRef> found;
         visit_probe(world, {a[0], a[1], a[2], a[3], a[4]},
-                    [&](const World& w, const auto&... probe) { w.overlap(probe..., found, layers); });
+                    [&](const World& w, const auto&... probe) { w.overlap(probe..., found, filter.get()); });
         py::array handles(handle_dtype(), py::array::ShapeContainer{static_cast<py::ssize_t>(found.size())});
         auto* out = static_cast<ObjectHandle*>(handles.mutable_data());
         for (const ObjectRef& ref : found) *out++ = ref.object;
@@ -113,37 +128,41 @@ PyObject* overlap_method(PyObject* self, PyObject* const* values, Py_ssize_t cou
 
 PyObject* closest_method(PyObject* self, PyObject* const* values, Py_ssize_t count, PyObject* keywords) {
     return call_method<PyWorld>(self, [&](const PyWorld& world) {
-        constexpr std::array kNames = {"max_distance", "box", "sphere", "capsule", "shape", "pose", "layers"};
+        constexpr std::array kNames = {"max_distance", "box",  "sphere", "capsule",
+                                       "shape",        "pose", "layers", "ignored"};
         const auto a = arguments_of("closest", kNames, 1, values, count, keywords);
         const auto max_distance = number_of<double>(a[0], "max_distance");
         check_limit(max_distance, "max_distance");
-        const std::uint32_t layers = layers_of(a[6]);
+        const Filter filter(a[6], a[7]);
         std::optional<ClosestObject> found;
-        visit_probe(world, {a[1], a[2], a[3], a[4], a[5]},
-                    [&](const World& w, const auto&... probe) { found = w.closest(probe..., max_distance, layers); });
+        visit_probe(world, {a[1], a[2], a[3], a[4], a[5]}, [&](const World& w, const auto&... probe) {
+            found = w.closest(probe..., max_distance, filter.get());
+        });
         return py::cast(found);
     });
 }
 
 PyObject* raycast_method(PyObject* self, PyObject* const* values, Py_ssize_t count, PyObject* keywords) {
     return call_method<PyWorld>(self, [&](const PyWorld& world) {
-        constexpr std::array kNames = {"origin", "direction", "max_t", "layers"};
+        constexpr std::array kNames = {"origin", "direction", "max_t", "layers", "ignored"};
         const auto a = arguments_of("raycast", kNames, 4, values, count, keywords);
         const Ray ray = ray_of(a[0], a[1], a[2].is_none() ? kInfinity : number_of<double>(a[2], "max_t"));
-        const std::uint32_t layers = layers_of(a[3]);
-        return py::cast(world.ask([&](const World& w) { return w.raycast(ray, layers); }));
+        const Filter filter(a[3], a[4]);
+        return py::cast(world.ask([&](const World& w) { return w.raycast(ray, filter.get()); }));
     });
 }
 
 std::optional<ShapeHit> cast(const PyWorld& world, const PyShape& shape, const py::handle& velocity,
                              const py::object& given_pose, const py::handle& spin, double duration,
-                             bool ignore_initial_overlaps, std::uint32_t layers) {
+                             bool ignore_initial_overlaps, std::uint32_t layers, const py::handle& ignored) {
+    const Filter filter(layers, ignored);
     convex::Motion motion;
     motion.velocity = vector_of(velocity, "velocity");
     motion.spin = vector_of(spin, "spin");
     const RigidTransform pose = pose_of(given_pose, "pose");
     const convex::CastOptions options{.duration = duration, .ignore_initial_overlaps = ignore_initial_overlaps};
-    return value_of(world.ask([&](const World& w) { return w.cast(*shape.shape, pose, motion, options, layers); }));
+    return value_of(
+        world.ask([&](const World& w) { return w.cast(*shape.shape, pose, motion, options, filter.get()); }));
 }
 
 }  // namespace
@@ -200,43 +219,46 @@ void bind_world_queries(py::module_& module, py::class_<PyWorld>& type) {
         .def_property_readonly("on_shape", [](const ClosestObject& c) { return tuple_of(c.on_shape); })
         .def_property_readonly("on_object", [](const ClosestObject& c) { return tuple_of(c.on_object); });
     add_method(type, "raycast", &raycast_method,
-               "raycast($self, origin, direction, max_t=inf, layers=None)\n--\n\n"
+               "raycast($self, origin, direction, max_t=inf, layers=None, ignored=None)\n--\n\n"
                "Returns the nearest ObjectHit, or None.");
     add_method(type, "overlap", &overlap_method,
-               "overlap($self, *, box=None, sphere=None, capsule=None, shape=None, pose=None, layers=None)\n--\n\n"
+               "overlap($self, *, box=None, sphere=None, capsule=None, shape=None, pose=None, layers=None, "
+               "ignored=None)\n--\n\n"
                "Returns the handles of the objects that overlap a box, sphere, capsule, or Shape at `pose`.");
     add_method(type, "closest", &closest_method,
                "closest($self, max_distance, *, box=None, sphere=None, capsule=None, shape=None, pose=None, "
-               "layers=None)\n--\n\n"
+               "layers=None, ignored=None)\n--\n\n"
                "Returns the nearest object, or None.");
     type.def("raycast_many", &raycast_many, py::arg("origins"), py::arg("directions"), py::arg("max_t") = kInfinity,
-             py::arg("layers") = ~0u,
+             py::arg("layers") = ~0u, py::arg("ignored") = py::none(),
              "Returns the nearest hit of each ray, as an array of records; `hit` is 0 for rays that hit nothing.")
         .def(
             "raycast_all",
             [](const PyWorld& world, const py::handle& origin, const py::handle& direction, double max_t,
-               std::uint32_t layers) {
+               std::uint32_t layers, const py::handle& ignored) {
+                const Filter filter(layers, ignored);
                 const Ray ray = ray_of(origin, direction, max_t);
                 Vector<ObjectHit> hits;
-                world.ask([&](const World& w) { w.raycast_all(ray, hits, layers); });
+                world.ask([&](const World& w) { w.raycast_all(ray, hits, filter.get()); });
                 py::list result;
                 for (const ObjectHit& hit : hits) result.append(hit);
                 return result;
             },
             py::arg("origin"), py::arg("direction"), py::arg("max_t") = kInfinity, py::arg("layers") = ~0u,
-            "Returns each object's first ObjectHit, ordered along the ray.")
+            py::arg("ignored") = py::none(), "Returns each object's first ObjectHit, ordered along the ray.")
         .def(
             "raycast_any",
             [](const PyWorld& world, const py::handle& origin, const py::handle& direction, double max_t,
-               std::uint32_t layers) {
+               std::uint32_t layers, const py::handle& ignored) {
+                const Filter filter(layers, ignored);
                 const Ray ray = ray_of(origin, direction, max_t);
-                return world.ask([&](const World& w) { return w.raycast_any(ray, layers); });
+                return world.ask([&](const World& w) { return w.raycast_any(ray, filter.get()); });
             },
             py::arg("origin"), py::arg("direction"), py::arg("max_t") = kInfinity, py::arg("layers") = ~0u,
-            "Tells whether a ray hits anything; faster than raycast.")
+            py::arg("ignored") = py::none(), "Tells whether a ray hits anything; faster than raycast.")
         .def("cast", &cast, py::arg("shape"), py::arg("velocity"), py::arg("pose") = py::none(), py::kw_only(),
              py::arg("spin") = py::make_tuple(0.0, 0.0, 0.0), py::arg("duration") = 1.0,
-             py::arg("ignore_initial_overlaps") = false, py::arg("layers") = ~0u,
+             py::arg("ignore_initial_overlaps") = false, py::arg("layers") = ~0u, py::arg("ignored") = py::none(),
              "Moves and turns a Shape from `pose` and returns its first ShapeHit, or None.")
         .def(
             "box_of",

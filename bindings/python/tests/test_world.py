@@ -525,3 +525,29 @@ def test_occluders_that_are_given_hide_what_is_behind(cube):
     with pytest.raises(crofton.Error) as error:
         world.set_occluders(mesh, [])
     assert error.value.code == "stale_handle"
+
+
+def test_queries_ignore_objects(world):
+    first = world.add(sphere=crofton.Sphere((0, 0, -5), 1.0))
+    second = world.add(sphere=crofton.Sphere((0, 0, -9), 1.0), layers=2)
+    world.update()
+    ray, ball = ((0, 0, 0), (0, 0, -1)), crofton.Sphere((0, 0, -5), 3.5)
+    assert world.raycast(*ray).object == first
+    both = world.overlap(sphere=ball)
+    for ignored in (first, [first], (first, first), both[:1]):
+        assert world.raycast(*ray, ignored=ignored).object == second
+    assert world.raycast(*ray, layers=1, ignored=first) is None
+    assert world.raycast(*ray, ignored=both) is None and not world.raycast_any(*ray, ignored=both)
+    assert world.raycast(*ray, ignored=None).object == world.raycast(*ray, ignored=[]).object == first
+    assert [hit.object for hit in world.raycast_all(*ray, ignored=second)] == [first]
+    assert list(world.raycast_many([ray[0]], [ray[1]], ignored=first)["index"]) == [second.index]
+    assert list(world.overlap(sphere=ball, ignored=first)["index"]) == [second.index]
+    assert world.closest(9.0, sphere=ball, ignored=first).object == second
+    shape = crofton.Shape.sphere(0.5)
+    assert world.cast(shape, (0, 0, -20), ignored=first).object == second
+    for wrong in (7, "a", [1], world):
+        with pytest.raises(TypeError):
+            world.raycast(*ray, ignored=wrong)
+    world.remove(first)
+    world.update()
+    assert world.raycast(*ray, ignored=first).object == second  # stale: without effect

@@ -45,7 +45,7 @@ pub use geometry::{
 pub use jobs::{Executor, Threads};
 pub use occlusion::{DepthBuffer, FindOptions, Occluder, OccluderRef, OcclusionOptions, OcclusionStatistics};
 pub use queries::{
-    Closest, Contact, Containment, Feature, Found, MeshContact, ObjectHit, ObjectPair, Phase, QueryShape,
+    Closest, Contact, Containment, Feature, Found, MeshContact, ObjectHit, ObjectPair, Phase, QueryFilter, QueryShape,
 };
 pub use queries::{ShapeHit, TrackedPoint};
 pub use regions::{AttachedRegion, Region, RegionObject, RegionOptions};

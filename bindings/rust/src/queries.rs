@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 //! Rays, shapes, pairs and contacts.
 use crate::error::{check, slice};
-use crate::{sys, CastOptions, ContactPoint, Motion, Obb, Object, ObjectRef, Part, Placed, Ray, Result, World};
+use crate::{
+    sys, CastOptions, ContactPoint, Motion, Obb, Object, ObjectRef, Part, Placed, Ray, Result, World, ALL_LAYERS,
+};
 use std::{mem::size_of, ptr};
 
 const NONE: u32 = u32::MAX;
@@ -263,47 +265,89 @@ impl Drop for Found {
     }
 }
 
+/// Limits rays, overlaps, nearest objects and casts to some of the objects. A layer mask converts to one.
+#[derive(Debug, Clone, Copy)]
+pub struct QueryFilter<'a> {
+    /// Finds objects that share a layer with this mask; all.
+    pub layers: u32,
+    /// Finds none of these, for example the object that asks and what it carries. Pass a few, and use layers for many.
+    pub ignored: &'a [Object],
+}
+
+impl Default for QueryFilter<'_> {
+    fn default() -> Self {
+        ALL_LAYERS.into()
+    }
+}
+
+impl From<u32> for QueryFilter<'_> {
+    fn from(layers: u32) -> Self {
+        QueryFilter { layers, ignored: &[] }
+    }
+}
+
+impl QueryFilter<'_> {
+    fn raw(&self) -> sys::QueryFilter {
+        sys::QueryFilter {
+            size: size_of::<sys::QueryFilter>(),
+            layers: self.layers,
+            ignored: self.ignored.as_ptr(),
+            ignored_count: self.ignored.len(),
+        }
+    }
+}
+
 impl World {
-    /// Returns the nearest hit of objects in any of `layers`: triangles of meshes, boxes and spheres.
-    pub fn raycast(&self, ray: &Ray, layers: u32) -> Result<Option<ObjectHit>> {
-        Ok(self.raycasts(std::slice::from_ref(ray), layers)?.pop().flatten())
+    /// Returns the nearest hit of the objects that the filter accepts: shapes, triangles of meshes, boxes and spheres.
+    pub fn raycast<'f>(&self, ray: &Ray, filter: impl Into<QueryFilter<'f>>) -> Result<Option<ObjectHit>> {
+        Ok(self.raycasts(std::slice::from_ref(ray), filter)?.pop().flatten())
     }
 
     /// Returns the nearest hit of each ray.
-    pub fn raycasts(&self, rays: &[Ray], layers: u32) -> Result<Vec<Option<ObjectHit>>> {
+    pub fn raycasts<'f>(&self, rays: &[Ray], filter: impl Into<QueryFilter<'f>>) -> Result<Vec<Option<ObjectHit>>> {
         let mut hits = vec![no_hit(); rays.len()];
-        check(unsafe { sys::crofton_world_raycast(self.raw, rays.as_ptr(), rays.len(), layers, hits.as_mut_ptr()) })?;
+        check(unsafe {
+            sys::crofton_world_raycast(self.raw, rays.as_ptr(), rays.len(), &filter.into().raw(), hits.as_mut_ptr())
+        })?;
         Ok(hits.into_iter().map(|hit| (hit.object.index != NONE).then_some(hit)).collect())
     }
 
     /// Tests whether the ray hits anything; faster than [`World::raycast`].
-    pub fn raycast_any(&self, ray: &Ray, layers: u32) -> Result<bool> {
+    pub fn raycast_any<'f>(&self, ray: &Ray, filter: impl Into<QueryFilter<'f>>) -> Result<bool> {
         let mut hit = 0;
-        check(unsafe { sys::crofton_world_raycast_any(self.raw, ray, layers, &mut hit) })?;
+        check(unsafe { sys::crofton_world_raycast_any(self.raw, ray, &filter.into().raw(), &mut hit) })?;
         Ok(hit != 0)
     }
 
     /// Lists the nearest hit of each object that the ray hits, in order of t, then of index.
-    pub fn raycast_all<'a>(&self, ray: &Ray, layers: u32, found: &'a mut Found) -> Result<&'a [ObjectHit]> {
+    pub fn raycast_all<'a, 'f>(
+        &self, ray: &Ray, filter: impl Into<QueryFilter<'f>>, found: &'a mut Found,
+    ) -> Result<&'a [ObjectHit]> {
         let (mut hits, mut count) = (ptr::null(), 0);
-        check(unsafe { sys::crofton_world_raycast_all(self.raw, ray, layers, found.raw) })?;
+        check(unsafe { sys::crofton_world_raycast_all(self.raw, ray, &filter.into().raw(), found.raw) })?;
         check(unsafe { sys::crofton_found_hits(found.raw, &mut hits, &mut count) })?;
         Ok(unsafe { slice(hits, count) })
     }
 
     /// The objects that overlap the shape, by index: their shapes, triangles, spheres or boxes.
-    pub fn overlap<'a>(&self, shape: &QueryShape, layers: u32, found: &'a mut Found) -> Result<&'a [ObjectRef]> {
-        check(unsafe { sys::crofton_world_overlap(self.raw, &shape.raw(), layers, found.raw) })?;
+    pub fn overlap<'a, 'f>(
+        &self, shape: &QueryShape, filter: impl Into<QueryFilter<'f>>, found: &'a mut Found,
+    ) -> Result<&'a [ObjectRef]> {
+        check(unsafe { sys::crofton_world_overlap(self.raw, &shape.raw(), &filter.into().raw(), found.raw) })?;
         let (mut objects, mut count) = (ptr::null(), 0);
         check(unsafe { sys::crofton_found_objects(found.raw, &mut objects, &mut count) })?;
         Ok(unsafe { slice(objects, count) })
     }
 
     /// The object nearest to the shape, no farther than `max_distance`, which may be infinite.
-    pub fn closest(&self, shape: &QueryShape, max_distance: f64, layers: u32) -> Result<Option<Closest>> {
+    pub fn closest<'f>(
+        &self, shape: &QueryShape, max_distance: f64, filter: impl Into<QueryFilter<'f>>,
+    ) -> Result<Option<Closest>> {
         let mut c: sys::ClosestObject = unsafe { std::mem::zeroed() };
         c.size = size_of::<sys::ClosestObject>();
-        check(unsafe { sys::crofton_world_closest(self.raw, &shape.raw(), max_distance, layers, &mut c) })?;
+        check(unsafe {
+            sys::crofton_world_closest(self.raw, &shape.raw(), max_distance, &filter.into().raw(), &mut c)
+        })?;
         let (object, user, distance) = (c.object, c.user, c.distance);
         let closest = Closest { object, user, distance, on_shape: c.on_shape, on_object: c.on_object };
         Ok((object.index != NONE).then_some(closest))
@@ -348,12 +392,14 @@ impl World {
 
     /// Finds the first object that a moving shape meets; the objects are at rest. A shape inside a closed mesh meets it from
     /// inside.
-    pub fn cast(
-        &self, shape: &Placed, motion: &Motion, options: &CastOptions, layers: u32,
+    pub fn cast<'f>(
+        &self, shape: &Placed, motion: &Motion, options: &CastOptions, filter: impl Into<QueryFilter<'f>>,
     ) -> Result<Option<ShapeHit>> {
         let mut h: sys::ShapeHit = unsafe { std::mem::zeroed() };
         h.size = size_of::<sys::ShapeHit>();
-        check(unsafe { sys::crofton_world_cast(self.raw, &shape.raw(), motion, &options.raw(), layers, &mut h) })?;
+        check(unsafe {
+            sys::crofton_world_cast(self.raw, &shape.raw(), motion, &options.raw(), &filter.into().raw(), &mut h)
+        })?;
         Ok((h.object.index != NONE).then_some(ShapeHit {
             object: h.object,
             user: h.user,

@@ -270,6 +270,14 @@ pub struct ShapePenetration {
 }
 
 #[repr(C)]
+pub struct QueryFilter {
+    pub size: usize,
+    pub layers: u32,
+    pub ignored: *const crate::Object,
+    pub ignored_count: usize,
+}
+
+#[repr(C)]
 pub struct CastOptions {
     pub size: usize,
     pub duration: f64,
@@ -785,10 +793,11 @@ extern "C" {
     pub fn crofton_view_result_get_view(result: *const ViewResult, view: usize, info: *mut ViewInfo) -> Status;
 
     pub fn crofton_world_raycast(
-        world: *const World, rays: *const crate::Ray, count: usize, layer_mask: u32, hits: *mut crate::ObjectHit,
+        world: *const World, rays: *const crate::Ray, count: usize, filter: *const QueryFilter,
+        hits: *mut crate::ObjectHit,
     ) -> Status;
     pub fn crofton_world_raycast_any(
-        world: *const World, ray: *const crate::Ray, layer_mask: u32, hit: *mut c_int,
+        world: *const World, ray: *const crate::Ray, filter: *const QueryFilter, hit: *mut c_int,
     ) -> Status;
     pub fn crofton_found_create(found: *mut *mut Found) -> Status;
     pub fn crofton_found_destroy(found: *mut Found) -> Status;
@@ -797,13 +806,14 @@ extern "C" {
     ) -> Status;
     pub fn crofton_found_hits(found: *const Found, hits: *mut *const crate::ObjectHit, count: *mut usize) -> Status;
     pub fn crofton_world_raycast_all(
-        world: *const World, ray: *const crate::Ray, layer_mask: u32, found: *mut Found,
+        world: *const World, ray: *const crate::Ray, filter: *const QueryFilter, found: *mut Found,
     ) -> Status;
     pub fn crofton_world_overlap(
-        world: *const World, shape: *const QueryShape, layer_mask: u32, found: *mut Found,
+        world: *const World, shape: *const QueryShape, filter: *const QueryFilter, found: *mut Found,
     ) -> Status;
     pub fn crofton_world_closest(
-        world: *const World, shape: *const QueryShape, max_distance: f64, layer_mask: u32, closest: *mut ClosestObject,
+        world: *const World, shape: *const QueryShape, max_distance: f64, filter: *const QueryFilter,
+        closest: *mut ClosestObject,
     ) -> Status;
     pub fn crofton_world_pairs(world: *const World, pairs: *mut *const crate::ObjectPair, count: *mut usize) -> Status;
     pub fn crofton_world_contacts(
@@ -812,7 +822,7 @@ extern "C" {
 
     pub fn crofton_world_cast(
         world: *const World, probe: *const Placed, motion: *const crate::Motion, options: *const CastOptions,
-        layer_mask: u32, hit: *mut ShapeHit,
+        filter: *const QueryFilter, hit: *mut ShapeHit,
     ) -> Status;
 
     pub fn crofton_world_set_occluders(

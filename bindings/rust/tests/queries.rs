@@ -46,6 +46,28 @@ fn a_ray_meets_all() {
 }
 
 #[test]
+fn queries_ignore_objects() {
+    let (world, objects) = row(3);
+    let ray = Ray::new([-10.0, 0.0, -5.0], [1.0, 0.0, 0.0]);
+    let mut found = Found::new().unwrap();
+    let filter = QueryFilter { ignored: &objects[..1], ..Default::default() };
+    assert_eq!(world.raycast(&ray, filter).unwrap().unwrap().object, objects[1]);
+    let hits = world.raycast_all(&ray, filter, &mut found).unwrap();
+    assert_eq!(hits.iter().map(|h| h.object).collect::<Vec<_>>(), objects[1..]);
+    let all = QueryFilter { layers: ALL_LAYERS, ignored: &objects };
+    assert!(world.raycast(&ray, all).unwrap().is_none());
+    assert!(!world.raycast_any(&ray, all).unwrap());
+    let ball = QueryShape::Sphere { center: [0.0, 0.0, -5.0], radius: 0.1 };
+    assert!(world.overlap(&ball, filter, &mut found).unwrap().is_empty());
+    assert_eq!(world.closest(&ball, f64::INFINITY, filter).unwrap().unwrap().object, objects[1]);
+    let shape = Shape::sphere(0.1).unwrap();
+    let motion = Motion { velocity: [20.0, 0.0, 0.0], ..Default::default() };
+    let placed = shape.at(Transform::at([-10.0, 0.0, -5.0]));
+    let hit = world.cast(&placed, &motion, &CastOptions::default(), filter).unwrap().unwrap();
+    assert_eq!(hit.object, objects[1]);
+}
+
+#[test]
 fn a_ray_without_direction_is_an_error() {
     let (world, _) = row(1);
     assert!(world.raycast(&Ray::new([0.0; 3], [0.0; 3]), ALL_LAYERS).is_err());

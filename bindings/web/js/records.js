@@ -12,6 +12,21 @@ export function layersOf(layers) {
     return layers >>> 0;
 }
 
+/** Calls `use` with the place of a filter, 0 for all objects: a layer mask, or `{ layers, ignored }` with objects that are not found. */
+export function withFilter(memory, filter, use) {
+    const { layers = ALL, ignored = [] } = filter !== null && typeof filter === 'object' ? filter : { layers: filter };
+    const mask = layersOf(layers);
+    if (!Array.isArray(ignored)) throw failure(1, 'ignored is an array of objects of a world');
+    if (mask === ALL && ignored.length === 0) return use(0);
+    const words = new Uint32Array(4 + 2 * ignored.length);
+    words.set([16, mask, 0, ignored.length]);
+    return memory.lend([words], (at) => {
+        memory.words[at + 8 >> 2] = at + 16;
+        ignored.forEach((object, i) => giveHandle(memory, object, 'object', at + 16 + 8 * i));
+        return use(at);
+    });
+}
+
 /** A user number's low and high half. */
 export function halvesOf(user) {
     if (!(Number.isInteger(user) && user >= 0 && user < 2 ** 53)) throw failure(1, 'user is a whole number below 2^53');

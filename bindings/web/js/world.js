@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 import { failure } from './error.js';
 import { Owned, checkArray, checkGroups, checkRecords, create, handleOf, numbersOf } from './memory.js';
-import { ALL, IDENTITY, clustersAt, giveHandle, halvesOf, handleAt, layersOf, meshArrays, refAt, userAt, vectorAt, writeBound, writeBox, writeMesh,
+import { ALL, IDENTITY, clustersAt, giveHandle, halvesOf, handleAt, layersOf, meshArrays, refAt, userAt, vectorAt, withFilter, writeBound, writeBox, writeMesh,
     writeRay, writeTransform } from './records.js';
 import { writeCast, writePlaced } from './shape.js';
 import { withRequests } from './views.js';
@@ -261,16 +261,16 @@ export class World extends Owned {
             normal: vectorAt(memory, at + 56), startedInside: (words[first + 20] & 255) !== 0 };
     }
     /** Returns the nearest hit of a ray, `{ object, user, t, point, triangle, child, normal, startedInside }`, or null. */
-    raycast(origin, direction, maxT = Infinity, layers = ALL) {
+    raycast(origin, direction, maxT = Infinity, filter = ALL) {
         const { memory } = this, at = writeRay(memory, memory.scratch(144), origin, direction, maxT);
-        memory.call('world_raycast', this.handle, at, 1, layersOf(layers), at + 56);
+        withFilter(memory, filter, (given) => memory.call('world_raycast', this.handle, at, 1, given, at + 56));
         return memory.words[at + 56 >> 2] === ALL ? null : this.#hitAt(at + 56);
     }
     /**
      * Many rays in a call: three numbers each, arrays of doubles. Returns `{ t, objects, triangles, normals }`: t is infinite for a ray that hits
      * nothing, and its object, as a triangle where there is none, -1.
      */
-    raycastMany(origins, directions, maxT = Infinity, layers = ALL) {
+    raycastMany(origins, directions, maxT = Infinity, filter = ALL) {
         const { memory, handle } = this, count = checkArray(origins, [Float64Array], 'origins').length / 3;
         checkArray(directions, [Float64Array], 'directions');
         checkGroups(origins, 3, 'origins');
@@ -280,7 +280,7 @@ export class World extends Owned {
                 for (let k = 0; k < 3; ++k) [doubles[at + k], doubles[at + 3 + k]] = [origins[3 * i + k], directions[3 * i + k]];
                 doubles[at + 6] = maxT;
             }
-            memory.call('world_raycast', handle, rays, count, layersOf(layers), hits);
+            withFilter(memory, filter, (given) => memory.call('world_raycast', handle, rays, count, given, hits));
             const answer = { t: new Float64Array(count).fill(Infinity), objects: new Int32Array(count).fill(-1),
                 triangles: new Int32Array(count).fill(-1), normals: new Float64Array(3 * count) };
             for (let i = 0, { doubles, words } = memory, at = hits; i < count; ++i, at += 88) {
@@ -292,23 +292,25 @@ export class World extends Owned {
         });
     }
     /** Returns the nearest hit of each object that the ray hits, in order of t, then of index. */
-    raycastAll(origin, direction, maxT = Infinity, layers = ALL) {
+    raycastAll(origin, direction, maxT = Infinity, filter = ALL) {
         return this.#find('hits', 88, (found, at) =>
-            this.memory.call('world_raycast_all', this.handle, writeRay(this.memory, at, origin, direction, maxT), layersOf(layers), found), (at) => this.#hitAt(at));
+            withFilter(this.memory, filter, (given) =>
+                this.memory.call('world_raycast_all', this.handle, writeRay(this.memory, at, origin, direction, maxT), given, found)), (at) => this.#hitAt(at));
     }
     /** Tells whether a ray hits anything; faster than `raycast`. */
-    raycastAny(origin, direction, maxT = Infinity, layers = ALL) {
+    raycastAny(origin, direction, maxT = Infinity, filter = ALL) {
         const { memory } = this, at = writeRay(memory, memory.scratch(64), origin, direction, maxT);
-        memory.call('world_raycast_any', this.handle, at, layersOf(layers), at + 56);
+        withFilter(memory, filter, (given) => memory.call('world_raycast_any', this.handle, at, given, at + 56));
         return memory.words[at + 56 >> 2] !== 0;
     }
     /**
      * Returns the objects that overlap `{ box }`, `{ sphere }`, `{ capsule: { begin, end, radius } }` or `{ shape, transform }`, as
      * `{ object, user }`, by index: their shapes, triangles of meshes, boxes and spheres.
      */
-    overlap(shape, layers = ALL) {
+    overlap(shape, filter = ALL) {
         return this.#find('objects', 16, (found, at) =>
-            this.memory.call('world_overlap', this.handle, this.#writeShape(at, shape), layersOf(layers), found), (at) => refAt(this.memory, at));
+            withFilter(this.memory, filter, (given) => this.memory.call('world_overlap', this.handle, this.#writeShape(at, shape), given, found)),
+            (at) => refAt(this.memory, at));
     }
     // Asks for a list, and reads what it found.
     #find(what, size, ask, read) {
@@ -328,10 +330,12 @@ export class World extends Owned {
         return Array.from({ length: count }, (_, i) => read(first + size * i));
     }
     /** Returns the object nearest to a shape, `{ object, user, distance, onShape, onObject }`, no farther than `maxDistance`; or null. */
-    closest(shape, maxDistance = Infinity, layers = ALL) {
+    closest(shape, maxDistance = Infinity, filter = ALL) {
         const { memory } = this, at = memory.scratch(336), answer = at + 256;
-        memory.words[answer >> 2] = 80;
-        memory.call('world_closest', this.handle, this.#writeShape(at, shape), maxDistance, layersOf(layers), answer);
+        withFilter(memory, filter, (given) => {
+            memory.words[answer >> 2] = 80;
+            memory.call('world_closest', this.handle, this.#writeShape(at, shape), maxDistance, given, answer);
+        });
         if (memory.words[answer + 4 >> 2] === ALL) return null;
         return { object: handleAt(memory, answer + 4, 'object'), user: userAt(memory, answer + 16), distance: memory.doubles[answer + 24 >> 3],
             onShape: vectorAt(memory, answer + 32), onObject: vectorAt(memory, answer + 56) };
@@ -340,11 +344,12 @@ export class World extends Owned {
      * Returns the first object that a shape meets which moves by `velocity` and turns by `spin` radians a unit of time about its `pivot`:
      * `{ object, user, time, normal, point, triangle, distance, unresolved }`, or null. The objects are at rest.
      */
-    cast({ shape, transform } = {}, how, layers = ALL) {
+    cast({ shape, transform } = {}, how, filter = ALL) {
         const { memory } = this, at = memory.scratch(304), motion = at + 104, options = at + 176, hit = at + 208;
         writeCast(memory, how, motion, options);
         memory.words[hit >> 2] = 96;
-        memory.call('world_cast', this.handle, writePlaced(memory, at, shape, transform), motion, options, layersOf(layers), hit);
+        withFilter(memory, filter, (given) =>
+            memory.call('world_cast', this.handle, writePlaced(memory, at, shape, transform), motion, options, given, hit));
         if (memory.words[hit + 4 >> 2] === ALL) return null;
         return { object: handleAt(memory, hit + 4, 'object'), user: userAt(memory, hit + 16), time: memory.doubles[hit + 24 >> 3],
             normal: vectorAt(memory, hit + 32), point: vectorAt(memory, hit + 56), triangle: memory.words[hit + 80 >> 2],

@@ -454,6 +454,25 @@ for (const build of BUILDS) {
             assert.ok(world.contains(object) && world.count === 1);
         });
     }
+    here('queries ignore objects', () => {
+        const world = new crofton.World(), ball = { sphere: { center: [0, 0, -5], radius: 3.5 } };
+        const first = world.add({ sphere: { center: [0, 0, -5], radius: 1 } }), second = world.add({ sphere: { center: [0, 0, -9], radius: 1 }, layers: 2 });
+        world.update();
+        const ray = [[0, 0, 0], [0, 0, -1], Infinity], ignored = [first], all = { ignored: [first, second] };
+        assert.deepEqual(world.raycast(...ray).object, first);
+        assert.deepEqual(world.raycast(...ray, { ignored }).object, second);
+        assert.equal(world.raycast(...ray, { layers: 1, ignored }), null);
+        assert.deepEqual(world.raycast(...ray, 2).object, second);
+        assert.equal(world.raycastAny(...ray, all), false);
+        assert.deepEqual(world.raycastAll(...ray, { ignored }).map((hit) => hit.object), [second]);
+        assert.deepEqual([...world.raycastMany(new Float64Array(3), Float64Array.of(0, 0, -1), Infinity, { ignored }).objects], [second.index]);
+        assert.deepEqual(world.overlap(ball, { ignored }).map((ref) => ref.object), [second]);
+        assert.deepEqual(world.closest(ball, Infinity, { ignored }).object, second);
+        const shape = new crofton.Shape({ sphere: { radius: 0.5 } }), transform = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
+        assert.deepEqual(world.cast({ shape, transform }, { velocity: [0, 0, -20] }, { ignored }).object, second);
+        for (const wrong of [{ ignored: first }, { ignored: [1] }, { ignored: [null] }, { layers: 0.5 }, 'all', null])
+            assert.throws(() => world.raycast(...ray, wrong), CroftonError);
+    });
     here('a bad item is named by its place', () => assert.throws(
         () => new crofton.Tree(new crofton.Boxes(3)).move([1, -1], new crofton.Boxes(2)), (error) => error.item === 1));
     here('vectors may be any array-like', () =>

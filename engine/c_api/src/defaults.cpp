@@ -142,6 +142,12 @@ crofton_cast_options crofton_default_cast_options(void) {
     return result;
 }
 
+crofton_query_filter crofton_default_query_filter(void) {
+    auto result = sized<crofton_query_filter>();
+    result.layers = ~0u;
+    return result;
+}
+
 crofton_fit_options crofton_default_fit_options(void) {
     const fit::FitOptions options;
     auto result = sized<crofton_fit_options>();

@@ -6,6 +6,7 @@
 #include <crofton/world/world.hpp>
 
 #include <crofton/capi/call.hpp>
+#include <crofton/capi/growing.hpp>
 #include <crofton/capi/shapes.hpp>
 
 struct crofton_world {
@@ -39,6 +40,17 @@ static_assert(offsetof(crofton_object, generation) == offsetof(ObjectHandle, gen
 [[nodiscard]] crofton_status to_mesh_description(const crofton_mesh_data& data, const char* function,
                                                  MeshDescription& description);
 [[nodiscard]] crofton_status to_bound(const crofton_bound& given, const char* function, Bound& bound);
+
+// NULL stands for a filter of all objects.
+[[nodiscard]] inline crofton_status to_filter(const crofton_query_filter* filter, const char* function,
+                                              QueryFilter& result) {
+    if (!filter) return CROFTON_OK;
+    crofton_query_filter given{};
+    CROFTON_CHECK(read_growing(filter, function, given));
+    CROFTON_CHECK(check_array(given.ignored, given.ignored_count, function));
+    result = {given.layers, {reinterpret_cast<const ObjectHandle*>(given.ignored), given.ignored_count}};
+    return CROFTON_OK;
+}
 
 [[nodiscard]] inline crofton_object_ref to_c_ref(const ObjectRef& ref) {
     return {{ref.object.index, ref.object.generation}, ref.user};

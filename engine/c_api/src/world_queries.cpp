@@ -116,22 +116,26 @@ crofton_status crofton_world_contains_node(const crofton_world* world, crofton_n
 }
 
 crofton_status crofton_world_raycast(const crofton_world* world, const crofton_ray* rays, size_t count,
-                                     uint32_t layer_mask, crofton_object_hit* hits) {
+                                     const crofton_query_filter* filter, crofton_object_hit* hits) {
     const SharedUse use(world, __func__);
     if (use.failed()) return use.status();
+    QueryFilter accepted;
+    CROFTON_CHECK(to_filter(filter, __func__, accepted));
     return answer_rays(rays, count, hits, __func__,
-                       [&](const Ray& ray) { return to_c_hit(world->world.raycast(ray, layer_mask)); });
+                       [&](const Ray& ray) { return to_c_hit(world->world.raycast(ray, accepted)); });
 }
 
-crofton_status crofton_world_raycast_any(const crofton_world* world, const crofton_ray* ray, uint32_t layer_mask,
-                                         int* hit) {
+crofton_status crofton_world_raycast_any(const crofton_world* world, const crofton_ray* ray,
+                                         const crofton_query_filter* filter, int* hit) {
     const SharedUse use(world, __func__);
     if (use.failed()) return use.status();
+    QueryFilter accepted;
+    CROFTON_CHECK(to_filter(filter, __func__, accepted));
     CROFTON_CHECK(check_pointer(ray, __func__));
     CROFTON_CHECK(check_pointer(hit, __func__));
     Ray checked;
     CROFTON_CHECK(to_ray(*ray, __func__, kNoItem, checked));
-    *hit = world->world.raycast_any(checked, layer_mask) ? 1 : 0;
+    *hit = world->world.raycast_any(checked, accepted) ? 1 : 0;
     return CROFTON_OK;
 }
 
@@ -164,42 +168,48 @@ crofton_status crofton_found_hits(const crofton_found* found, const crofton_obje
     return CROFTON_OK;
 }
 
-crofton_status crofton_world_raycast_all(const crofton_world* world, const crofton_ray* ray, uint32_t layer_mask,
-                                         crofton_found* found) {
+crofton_status crofton_world_raycast_all(const crofton_world* world, const crofton_ray* ray,
+                                         const crofton_query_filter* filter, crofton_found* found) {
     const SharedUse use_world(world, __func__);
     if (use_world.failed()) return use_world.status();
     const ExclusiveUse use(found, __func__);
     if (use.failed()) return use.status();
+    QueryFilter accepted;
+    CROFTON_CHECK(to_filter(filter, __func__, accepted));
     CROFTON_CHECK(check_pointer(ray, __func__));
     Ray checked;
     CROFTON_CHECK(to_ray(*ray, __func__, kNoItem, checked));
     found->objects.clear();
-    world->world.raycast_all(checked, found->hits, layer_mask);
+    world->world.raycast_all(checked, found->hits, accepted);
     return CROFTON_OK;
 }
 
-crofton_status crofton_world_overlap(const crofton_world* world, const crofton_query_shape* shape, uint32_t layer_mask,
-                                     crofton_found* found) {
+crofton_status crofton_world_overlap(const crofton_world* world, const crofton_query_shape* shape,
+                                     const crofton_query_filter* filter, crofton_found* found) {
     const SharedUse use_world(world, __func__);
     if (use_world.failed()) return use_world.status();
     const ExclusiveUse use(found, __func__);
     if (use.failed()) return use.status();
+    QueryFilter accepted;
+    CROFTON_CHECK(to_filter(filter, __func__, accepted));
     return visit_shape(shape, __func__, [&](const auto&... asked) {
         found->hits.clear();
-        world->world.overlap(asked..., found->objects, layer_mask);
+        world->world.overlap(asked..., found->objects, accepted);
         return CROFTON_OK;
     });
 }
 
 crofton_status crofton_world_closest(const crofton_world* world, const crofton_query_shape* shape, double max_distance,
-                                     uint32_t layer_mask, crofton_closest_object* closest) {
+                                     const crofton_query_filter* filter, crofton_closest_object* closest) {
     const SharedUse use(world, __func__);
     if (use.failed()) return use.status();
+    QueryFilter accepted;
+    CROFTON_CHECK(to_filter(filter, __func__, accepted));
     CROFTON_CHECK(check_growing(closest, __func__));
     CROFTON_CHECK(check_limit(max_distance, "max_distance", __func__));
     return visit_shape(shape, __func__, [&](const auto&... asked) {
         crofton_closest_object result{0, {CROFTON_NONE, 0}, 0, kNoDistance, {}, {}};
-        if (const auto nearest = world->world.closest(asked..., max_distance, layer_mask)) {
+        if (const auto nearest = world->world.closest(asked..., max_distance, accepted)) {
             result.object = {nearest->object.index, nearest->object.generation};
             result.user = nearest->user;
             result.distance = nearest->distance;

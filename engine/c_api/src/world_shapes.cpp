@@ -11,15 +11,18 @@ using namespace crofton;
 using namespace crofton::capi;
 
 crofton_status crofton_world_cast(const crofton_world* world, const crofton_placed* probe, const crofton_motion* motion,
-                                  const crofton_cast_options* options, uint32_t layer_mask, crofton_shape_hit* hit) {
+                                  const crofton_cast_options* options, const crofton_query_filter* filter,
+                                  crofton_shape_hit* hit) {
     const SharedUse use(world, __func__);
     if (use.failed()) return use.status();
+    QueryFilter accepted;
+    CROFTON_CHECK(to_filter(filter, __func__, accepted));
     CROFTON_CHECK(check_growing(hit, __func__));
     const PlacedShape placed(probe, __func__);
     CROFTON_CHECK(placed.status());
     convex::CastOptions wanted;
     CROFTON_CHECK(to_cast_options(options, __func__, wanted));
-    const auto found = world->world.cast(placed.shape(), placed.pose(), to_motion(motion), wanted, layer_mask);
+    const auto found = world->world.cast(placed.shape(), placed.pose(), to_motion(motion), wanted, accepted);
     if (!found) return report(found.error(), __func__);
     crofton_shape_hit result{};
     result.object.index = CROFTON_NONE;

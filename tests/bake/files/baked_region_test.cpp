@@ -103,8 +103,8 @@ TEST_SUITE("bake/baked_region") {
             const Ray ray{origin + glm::dvec3(x, 0.0, z), {u, v, w}};
             const std::uint32_t layers = n % 2 ? 1u : 2u;
             Vector<ObjectHit> found, expected;
-            world.raycast_all(ray, found, layers);
-            single.raycast_all(ray, expected, layers);
+            world.raycast_all(ray, found, {layers});
+            single.raycast_all(ray, expected, {layers});
             REQUIRE(found.size() == expected.size());
             for (std::size_t h = 0; h < found.size(); ++h) {
                 CHECK(found[h].user == expected[h].user);

@@ -89,15 +89,15 @@ void check_answers(const World& world, const Model& model, NearMisses& random) {
         const std::uint32_t layers = random.index(2) ? ~0u : 1u << random.index(4);
         const Ray ray = random_ray(random);
         const auto expected = model.along(ray, layers);
-        world.raycast_all(ray, hits, layers);
+        world.raycast_all(ray, hits, {layers});
         REQUIRE(hits.size() == expected.size());
         for (std::size_t i = 0; i < hits.size(); ++i) {
             CHECK(hits[i].t == doctest::Approx(expected[i].first).epsilon(1e-9));
             CHECK(hits[i].user == model.objects.at(hits[i].object.index).user);
             CHECK(glm::length(hits[i].point - (ray.origin + hits[i].t * ray.direction)) == 0.0);
         }
-        CHECK(world.raycast_any(ray, layers) == !expected.empty());
-        const auto nearest = world.raycast(ray, layers);
+        CHECK(world.raycast_any(ray, {layers}) == !expected.empty());
+        const auto nearest = world.raycast(ray, {layers});
         REQUIRE(nearest.has_value() == !expected.empty());
         if (nearest) {
             CHECK(nearest->t == hits[0].t);
@@ -105,15 +105,15 @@ void check_answers(const World& world, const Model& model, NearMisses& random) {
         }
         const Obb box = oracle::random_box(random, {}, 30.0);
         const Sphere sphere{box.center, random.number(0.0, 8.0)};
-        world.overlap(box, found, layers);
+        world.overlap(box, found, {layers});
         CHECK(ids_of(found) == model.overlapping(box, layers));
-        world.overlap(sphere, found, layers);
+        world.overlap(sphere, found, {layers});
         CHECK(ids_of(found) == model.overlapping(sphere, layers));
-        world.overlap(collide::Capsule{sphere.center, sphere.center, sphere.radius}, found, layers);
+        world.overlap(collide::Capsule{sphere.center, sphere.center, sphere.radius}, found, {layers});
         CHECK(ids_of(found) == model.overlapping(sphere, layers));
         for (const double limit : {1.0, 1e3}) {
             const double least = model.distance_to(box, layers);
-            const auto closest = world.closest(box, limit, layers);
+            const auto closest = world.closest(box, limit, {layers});
             REQUIRE(closest.has_value() == (least <= limit));
             if (!closest) continue;
             CHECK(closest->distance == doctest::Approx(least).epsilon(1e-9));

@@ -142,8 +142,8 @@ TEST_SUITE("world/meshes") {
         REQUIRE(world.set_layers(ship, 2).has_value());
         REQUIRE(world.set_layers(hull, 6).has_value());
         REQUIRE(world.update().has_value());
-        CHECK(!world.raycast(down(0.0, 0.0), 4));
-        CHECK(world.raycast(down(0.0, 0.0), 2)->object == hull);
+        CHECK(!world.raycast(down(0.0, 0.0), {4}));
+        CHECK(world.raycast(down(0.0, 0.0), {2})->object == hull);
         CHECK(seen(world) == 3);
         REQUIRE(world.set_transform(ship, at({}, glm::dmat3(0.0))).has_value());
         REQUIRE(world.update().has_value());

@@ -47,24 +47,24 @@ void check_queries(const World& world, const Model& model, NearMisses& random, d
     const std::uint32_t layers = random.index(2) ? ~0u : 1u << random.index(3);
     const Ray ray = ray_on_grid(random, place);
     const auto along = model.along(ray, layers);
-    world.raycast_all(ray, hits, layers);
+    world.raycast_all(ray, hits, {layers});
     REQUIRE(hits.size() == along.size());
     for (std::size_t i = 0; i < hits.size(); ++i) CHECK(hits[i].t == doctest::Approx(along[i].first).epsilon(1e-9));
-    CHECK(world.raycast_any(ray, layers) == !along.empty());
-    const auto nearest = world.raycast(ray, layers);
+    CHECK(world.raycast_any(ray, {layers}) == !along.empty());
+    const auto nearest = world.raycast(ray, {layers});
     REQUIRE(nearest.has_value() == !along.empty());
     if (nearest) CHECK(nearest->object == hits[0].object);
 
     const Bound probe = bound_on_grid(random, place);
     const auto expected = model.overlapping(probe.box, layers);
-    world.overlap(probe.box, found, layers);
+    world.overlap(probe.box, found, {layers});
     CHECK(ids_of(found) == expected);
     const Sphere sphere{probe.box.center, 0.5 * random.index(6)};
-    world.overlap(sphere, found, layers);
+    world.overlap(sphere, found, {layers});
     CHECK(ids_of(found) == model.overlapping(sphere, layers));
     for (const double limit : {0.5, 1e3, 1e300}) {
         const double least = model.distance_to(probe.box, layers);
-        const auto closest = world.closest(probe.box, limit, layers);
+        const auto closest = world.closest(probe.box, limit, {layers});
         REQUIRE(closest.has_value() == (least <= limit));
         if (closest) CHECK(closest->distance == doctest::Approx(least).epsilon(1e-9));
     }

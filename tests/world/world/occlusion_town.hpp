@@ -131,7 +131,7 @@ inline bool is_witnessed(const World& world, const Camera& camera, const Frustum
         bool in_view = true;
         for (const Plane& plane : frustum.view())
             in_view = in_view && glm::dot(plane.normal, point - frustum.origin) + plane.offset > 1e-6;
-        const auto hit = world.raycast({camera.position, point - camera.position, 1.0}, layers);
+        const auto hit = world.raycast({camera.position, point - camera.position, 1.0}, {layers});
         // What begins before the near plane is not drawn: such a ray tells nothing.
         if (in_view && hit && hit->object == object && hit->t * glm::length(point - camera.position) > 0.3) return true;
     }

@@ -307,8 +307,8 @@ void check_rays(const TwoWorlds& worlds, NearMisses& random, const glm::dvec3& n
     if (random.index(8) == 0) ray.direction *= 1e-120;
     const std::uint32_t layers = random.index(2) ? ~0u : 1u << random.index(3);
     Vector<ObjectHit> found, expected;
-    worlds.with.raycast_all(ray, found, layers);
-    worlds.single.raycast_all(ray, expected, layers);
+    worlds.with.raycast_all(ray, found, {layers});
+    worlds.single.raycast_all(ray, expected, {layers});
     REQUIRE(found.size() == expected.size());
     const auto fields = [](std::uint64_t number, const ObjectHit& hit) {
         return std::tuple(hit.t, number, hit.point.x, hit.point.y, hit.point.z, hit.normal.x, hit.normal.y,
@@ -326,13 +326,13 @@ void check_rays(const TwoWorlds& worlds, NearMisses& random, const glm::dvec3& n
     std::sort(found_fields.begin(), found_fields.end());
     std::sort(expected_fields.begin(), expected_fields.end());
     CHECK(found_fields == expected_fields);
-    const auto nearest = worlds.with.raycast(ray, layers);
+    const auto nearest = worlds.with.raycast(ray, {layers});
     REQUIRE(nearest.has_value() == !found.empty());
     if (nearest) {
         CHECK(nearest->object == found[0].object);
         CHECK(fields(0, *nearest) == fields(0, found[0]));
     }
-    CHECK(worlds.with.raycast_any(ray, layers) == !found.empty());
+    CHECK(worlds.with.raycast_any(ray, {layers}) == !found.empty());
 }
 
 // Of objects that are equally near, each World names that of its lowest index.
@@ -355,29 +355,29 @@ void check_shapes(const TwoWorlds& worlds, NearMisses& random, const glm::dvec3&
     const std::uint32_t layers = random.index(2) ? ~0u : 1u << random.index(3);
     Vector<ObjectRef> found, expected;
     const auto compare = [&](const auto& asked) {
-        worlds.with.overlap(asked, found, layers);
-        worlds.single.overlap(asked, expected, layers);
+        worlds.with.overlap(asked, found, {layers});
+        worlds.single.overlap(asked, expected, {layers});
         CHECK(numbers_of(worlds, found) == numbers_of(worlds, expected));
         CHECK(std::is_sorted(found.begin(), found.end(),
                              [](const ObjectRef& a, const ObjectRef& b) { return a.object.index < b.object.index; }));
         for (const double limit : {0.5, 1e300})
-            check_closest(worlds, worlds.with.closest(asked, limit, layers),
-                          worlds.single.closest(asked, limit, layers));
+            check_closest(worlds, worlds.with.closest(asked, limit, {layers}),
+                          worlds.single.closest(asked, limit, {layers}));
     };
     compare(box);
     compare(sphere);
     compare(capsule);
     const auto shape = convex::Shape::capsule(0.5f, 0.5f).value();
     const RigidTransform pose{glm::dmat3(1.0), box.center};
-    worlds.with.overlap(shape, pose, found, layers);
-    worlds.single.overlap(shape, pose, expected, layers);
+    worlds.with.overlap(shape, pose, found, {layers});
+    worlds.single.overlap(shape, pose, expected, {layers});
     CHECK(numbers_of(worlds, found) == numbers_of(worlds, expected));
-    check_closest(worlds, worlds.with.closest(shape, pose, 5.0, layers),
-                  worlds.single.closest(shape, pose, 5.0, layers));
+    check_closest(worlds, worlds.with.closest(shape, pose, 5.0, {layers}),
+                  worlds.single.closest(shape, pose, 5.0, {layers}));
     const double u = random.number(-4.0, 4.0), v = random.number(-4.0, 4.0), w = random.number(-4.0, 4.0);
     const convex::Motion motion{.velocity = {u, v, w}};
-    const auto hit = worlds.with.cast(shape, pose, motion, {}, layers).value(),
-               expected_hit = worlds.single.cast(shape, pose, motion, {}, layers).value();
+    const auto hit = worlds.with.cast(shape, pose, motion, {}, {layers}).value(),
+               expected_hit = worlds.single.cast(shape, pose, motion, {}, {layers}).value();
     REQUIRE(hit.has_value() == expected_hit.has_value());
     if (!hit) return;
     CHECK(hit->time == expected_hit->time);

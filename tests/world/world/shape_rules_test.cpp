@@ -176,16 +176,16 @@ TEST_SUITE("world/shape_rules") {
                 if (impact.result != convex::CastResult::miss) first = std::min(first, impact.time);
             }
             Vector<ObjectRef> found;
-            shapes.world.overlap(probe, pose, found, layers);
+            shapes.world.overlap(probe, pose, found, {layers});
             std::vector<std::uint32_t> told;
             for (const ObjectRef& ref : found) told.push_back(ref.object.index);
             CHECK(told == expected);
             found_all += static_cast<int>(told.size());
-            const auto hit = shapes.world.cast(probe, pose, motion, {}, layers).value();
+            const auto hit = shapes.world.cast(probe, pose, motion, {}, {layers}).value();
             REQUIRE(hit.has_value() == (first <= 1.0));
             if (hit) CHECK(hit->time == doctest::Approx(first).epsilon(1e-5));
             hits += hit.has_value();
-            const auto nearest = shapes.world.closest(probe, pose, 1e3, layers);
+            const auto nearest = shapes.world.closest(probe, pose, 1e3, {layers});
             REQUIRE(nearest.has_value() == std::isfinite(least));
             if (nearest) CHECK(nearest->distance == least);
         }

@@ -103,24 +103,30 @@ double farthest(const Aabb& a, const Aabb& b) {
 
 }  // namespace
 
-void World::State::visit_along(const Ray& ray, std::uint32_t layers, collide::RayVisitor visit) const {
+void World::State::visit_along(const Ray& ray, const QueryFilter& filter, collide::RayVisitor visit) const {
     Ray rest = ray;
+    if (!filter.ignored.empty()) {
+        const auto visit_wanted = [&](std::uint32_t id, double t) {
+            return is_ignored(filter, id) ? rest.max_t : rest.max_t = visit(id, t);
+        };
+        return visit_along(ray, {filter.layers}, visit_wanted);
+    }
     const auto visit_living = [&](std::uint32_t object, double t) {
         if (table.objects[object].alive && !object_shapes.is_unbounded(object)) rest.max_t = visit(object, t);
         return rest.max_t;
     };
     for (const std::uint32_t object : object_shapes.unbounded())
-        if (rest.max_t >= 0.0 && is_ground(object, layers)) rest.max_t = visit(object, 0.0);
+        if (rest.max_t >= 0.0 && is_ground(object, filter.layers)) rest.max_t = visit(object, 0.0);
     if (!(rest.max_t >= 0.0)) return;
-    collide::visit_along(rest, index.tree(), visit_living, layers);
+    collide::visit_along(rest, index.tree(), visit_living, filter.layers);
     const cull::MovingBoxes& moving = index.moving();
     index.visit_movers_along(rest, [&](std::size_t i) {
         if (rest.max_t < 0.0) return false;
-        if ((index.layers(moving.items()[i]) & layers) == 0) return true;
+        if ((index.layers(moving.items()[i]) & filter.layers) == 0) return true;
         if (const auto t = mesh::raycast(rest, moving.boxes()[i])) visit_living(moving.items()[i], *t);
         return true;
     });
-    regions.visit_along(rest, layers, visit);
+    regions.visit_along(rest, filter.layers, visit);
 }
 
 std::optional<ObjectHit> World::State::own_shape_hit(const Ray& ray, std::uint32_t id) const {
@@ -203,13 +209,13 @@ std::optional<ObjectHit> World::State::shape_hit(const Ray& ray, std::uint32_t i
     return hit;
 }
 
-std::optional<ObjectHit> World::raycast(const Ray& ray, std::uint32_t layers) const {
+std::optional<ObjectHit> World::raycast(const Ray& ray, const QueryFilter& filter) const {
     std::optional<ObjectHit> nearest;  // but for a box, whose hit is made once it is known to be the nearest
     std::uint32_t nearest_id = kNoIndex;
     double nearest_t = 0.0;
     const EvenRay even(ray);
     Ray rest = even.ray;
-    state_->visit_along(even.ray, layers, [&](std::uint32_t object, double t) {
+    state_->visit_along(even.ray, filter, [&](std::uint32_t object, double t) {
         std::optional<ObjectHit> hit;
         if (!state_->is_box(object)) {
             hit = state_->shape_hit(rest, object, t);
@@ -231,20 +237,20 @@ std::optional<ObjectHit> World::raycast(const Ray& ray, std::uint32_t layers) co
     return nearest;
 }
 
-bool World::raycast_any(const Ray& ray, std::uint32_t layers) const {
+bool World::raycast_any(const Ray& ray, const QueryFilter& filter) const {
     bool any = false;
     const EvenRay even(ray);
-    state_->visit_along(even.ray, layers, [&](std::uint32_t object, double t) {
+    state_->visit_along(even.ray, filter, [&](std::uint32_t object, double t) {
         any = any || state_->shape_hit(even.ray, object, t).has_value();
         return any ? -1.0 : even.ray.max_t;
     });
     return any;
 }
 
-void World::raycast_all(const Ray& ray, Vector<ObjectHit>& hits, std::uint32_t layers) const {
+void World::raycast_all(const Ray& ray, Vector<ObjectHit>& hits, const QueryFilter& filter) const {
     hits.clear();
     const EvenRay even(ray);
-    state_->visit_along(even.ray, layers, [&](std::uint32_t object, double t) {
+    state_->visit_along(even.ray, filter, [&](std::uint32_t object, double t) {
         if (const auto hit = state_->shape_hit(even.ray, object, t)) hits.push_back(*hit);
         return even.ray.max_t;
     });
@@ -254,13 +260,24 @@ void World::raycast_all(const Ray& ray, Vector<ObjectHit>& hits, std::uint32_t l
     for (ObjectHit& hit : hits) even.restore(hit);  // the caller's t may be infinite: order is by the point
 }
 
-void World::State::visit_near(const Aabb& bounds, double distance, std::uint32_t layers,
+bool World::State::is_ignored(const QueryFilter& filter, std::uint32_t id) const {
+    for (const ObjectHandle& ignored : filter.ignored)
+        if (ignored.index == id && ignored == ref_of(id).object) return true;
+    return false;
+}
+
+void World::State::visit_near(const Aabb& bounds, double distance, const QueryFilter& filter,
                               collide::NearVisitor visit) const {
+    if (!filter.ignored.empty()) {
+        double rest = distance;
+        const auto visit_wanted = [&](std::uint32_t id) { return is_ignored(filter, id) ? rest : rest = visit(id); };
+        return visit_near(bounds, distance, {filter.layers}, visit_wanted);
+    }
     for (const std::uint32_t object : object_shapes.unbounded())
-        if (is_ground(object, layers)) distance = visit(object);
+        if (is_ground(object, filter.layers)) distance = visit(object);
     const auto visit_own = [&](std::uint32_t object) { return distance = visit(object); };
-    visit_bounded_near(bounds, distance, layers, visit_own);
-    regions.visit_near(bounds, distance, layers, visit);
+    visit_bounded_near(bounds, distance, filter.layers, visit_own);
+    regions.visit_near(bounds, distance, filter.layers, visit);
 }
 
 void World::State::visit_bounded_near(const Aabb& bounds, double distance, std::uint32_t layers,
@@ -290,11 +307,11 @@ bool meets_bound(const Shape& probe, const world::Object& object, const Obb& box
 }  // namespace
 
 template <class Shape>
-void World::State::overlap(const Shape& probe, Vector<ObjectRef>& found, std::uint32_t layers) const {
+void World::State::overlap(const Shape& probe, Vector<ObjectRef>& found, const QueryFilter& filter) const {
     found.clear();
     if (!is_valid(probe)) return;
     const world::QueryShape asked = world::shape_of(probe);
-    visit_near(bounds_of(probe), 0.0, layers, [&](std::uint32_t id) {
+    visit_near(bounds_of(probe), 0.0, filter, [&](std::uint32_t id) {
         const bool meets = has_shape(id)                ? overlaps(asked.placed(), id)
                            : world::is_region_index(id) ? meets_bound(probe, regions.object(id), regions.box(id))
                                                         : meets_bound(probe, table.objects[id], index.box(id));
@@ -304,14 +321,14 @@ void World::State::overlap(const Shape& probe, Vector<ObjectRef>& found, std::ui
     world::sort_by_object(found);
 }
 
-void World::overlap(const Obb& probe, Vector<ObjectRef>& found, std::uint32_t layers) const {
-    state_->overlap(probe, found, layers);
+void World::overlap(const Obb& probe, Vector<ObjectRef>& found, const QueryFilter& filter) const {
+    state_->overlap(probe, found, filter);
 }
-void World::overlap(const Sphere& probe, Vector<ObjectRef>& found, std::uint32_t layers) const {
-    state_->overlap(probe, found, layers);
+void World::overlap(const Sphere& probe, Vector<ObjectRef>& found, const QueryFilter& filter) const {
+    state_->overlap(probe, found, filter);
 }
-void World::overlap(const collide::Capsule& probe, Vector<ObjectRef>& found, std::uint32_t layers) const {
-    state_->overlap(probe, found, layers);
+void World::overlap(const collide::Capsule& probe, Vector<ObjectRef>& found, const QueryFilter& filter) const {
+    state_->overlap(probe, found, filter);
 }
 
 // A limit that is rounded to 0 grows too; one without end is beyond all that boxes and shapes may be.
@@ -319,7 +336,7 @@ constexpr double kLeastGrowth = 1e-300, kFarthest = 1e300;
 
 // Within a small distance first: the tree is entered in no order of nearness. Meshes take long, so they are asked last,
 // within a distance that one of their boxes keeps to.
-std::optional<ClosestObject> World::State::closest(const Aabb& bounds, double max_distance, std::uint32_t layers,
+std::optional<ClosestObject> World::State::closest(const Aabb& bounds, double max_distance, const QueryFilter& filter,
                                                    GapTo gap_to_object) const {
     std::optional<ClosestObject> nearest;
     if (!(max_distance >= 0.0)) return nearest;
@@ -338,38 +355,38 @@ std::optional<ClosestObject> World::State::closest(const Aabb& bounds, double ma
     for (double limit = max_distance * 0x1p-12;; limit = std::min(std::max(8.0 * limit, kLeastGrowth), max_distance)) {
         rest = limit;
         bool has_meshes = false;
-        visit_near(bounds, limit, layers, [&](std::uint32_t id) {
+        visit_near(bounds, limit, filter, [&](std::uint32_t id) {
             if (!is_mesh(id)) return look_at(id);
             has_meshes = true;
             return rest = std::min(rest, farthest(bounds, aabb_of(box_of_object(id))));
         });
         if (has_meshes)
-            visit_near(bounds, rest, layers, [&](std::uint32_t id) { return is_mesh(id) ? look_at(id) : rest; });
+            visit_near(bounds, rest, filter, [&](std::uint32_t id) { return is_mesh(id) ? look_at(id) : rest; });
         if (nearest || limit == max_distance) return nearest;
     }
 }
 
 template <class Shape>
 std::optional<ClosestObject> World::State::closest(const Shape& probe, double max_distance,
-                                                   std::uint32_t layers) const {
+                                                   const QueryFilter& filter) const {
     if (!is_valid(probe)) return std::nullopt;
     const world::QueryShape asked = world::shape_of(probe);
-    return closest(bounds_of(probe), max_distance, layers, [&](std::uint32_t id, double limit) {
+    return closest(bounds_of(probe), max_distance, filter, [&](std::uint32_t id, double limit) {
         if (has_shape(id)) return gap_to_shape(asked.placed(), id, limit);
         return world::is_region_index(id) ? gap_to(probe, regions.object(id), regions.box(id))
                                           : gap_to(probe, table.objects[id], index.box(id));
     });
 }
 
-std::optional<ClosestObject> World::closest(const Sphere& probe, double max_distance, std::uint32_t layers) const {
-    return state_->closest(collide::Capsule{probe.center, probe.center, probe.radius}, max_distance, layers);
+std::optional<ClosestObject> World::closest(const Sphere& probe, double max_distance, const QueryFilter& filter) const {
+    return state_->closest(collide::Capsule{probe.center, probe.center, probe.radius}, max_distance, filter);
 }
-std::optional<ClosestObject> World::closest(const Obb& probe, double max_distance, std::uint32_t layers) const {
-    return state_->closest(probe, max_distance, layers);
+std::optional<ClosestObject> World::closest(const Obb& probe, double max_distance, const QueryFilter& filter) const {
+    return state_->closest(probe, max_distance, filter);
 }
 std::optional<ClosestObject> World::closest(const collide::Capsule& probe, double max_distance,
-                                            std::uint32_t layers) const {
-    return state_->closest(probe, max_distance, layers);
+                                            const QueryFilter& filter) const {
+    return state_->closest(probe, max_distance, filter);
 }
 
 }  // namespace crofton

@@ -114,11 +114,11 @@ Result<void> check(const convex::Shape& probe, const RigidTransform& pose) {
 }  // namespace
 
 void World::overlap(const convex::Shape& probe, const RigidTransform& pose, Vector<ObjectRef>& found,
-                    std::uint32_t layers) const {
+                    const QueryFilter& filter) const {
     found.clear();
     if (!check(probe, pose)) return;
     const State& s = *state_;
-    s.visit_near(bounds_of(probe, pose), 0.0, layers, [&](std::uint32_t id) {
+    s.visit_near(bounds_of(probe, pose), 0.0, filter, [&](std::uint32_t id) {
         if (s.overlaps({probe, pose}, id)) found.push_back(s.ref_of(id));
         return 0.0;
     });
@@ -126,17 +126,17 @@ void World::overlap(const convex::Shape& probe, const RigidTransform& pose, Vect
 }
 
 std::optional<ClosestObject> World::closest(const convex::Shape& probe, const RigidTransform& pose, double max_distance,
-                                            std::uint32_t layers) const {
+                                            const QueryFilter& filter) const {
     if (!check(probe, pose)) return std::nullopt;
     const State& s = *state_;
-    return s.closest(bounds_of(probe, pose), max_distance, layers, [&](std::uint32_t id, double limit) {
+    return s.closest(bounds_of(probe, pose), max_distance, filter, [&](std::uint32_t id, double limit) {
         return s.gap_to_shape({probe, pose}, id, limit);
     });
 }
 
 Result<std::optional<ShapeHit>> World::cast(const convex::Shape& probe, const RigidTransform& pose,
                                             const convex::Motion& motion, const convex::CastOptions& options,
-                                            std::uint32_t layers) const {
+                                            const QueryFilter& filter) const {
     if (auto good = check(probe, pose); !good) return good.error();
     // Bad motions and options are told also where nothing is near.
     static const convex::Shape kPoint = *convex::Shape::sphere(0.0);
@@ -158,7 +158,7 @@ Result<std::optional<ShapeHit>> World::cast(const convex::Shape& probe, const Ri
         std::optional<ShapeHit> first;
         convex::CastOptions rest = options;
         const Aabb swept = swept_bounds(probe, pose, motion, options.duration, options.tolerance);
-        s.visit_near(swept, 0.0, layers, [&](std::uint32_t id) {
+        s.visit_near(swept, 0.0, filter, [&](std::uint32_t id) {
             const world::QueryShape stand = s.query_shape_of(id);
             if (!stand.pose) return 0.0;
             const auto impact =
@@ -177,7 +177,7 @@ Result<std::optional<ShapeHit>> World::cast(const convex::Shape& probe, const Ri
         convex::CastOptions now = options;
         now.duration = 0.0;
         now.ignore_initial_overlaps = false;
-        s.visit_near(bounds_of(probe, there), options.tolerance, layers, [&](std::uint32_t id) {
+        s.visit_near(bounds_of(probe, there), options.tolerance, filter, [&](std::uint32_t id) {
             const world::QueryShape stand = s.query_shape_of(id);
             if (!stand.pose) return options.tolerance;
             const auto impact = convex::cast({probe, there}, {}, {stand.shape, *stand.pose}, {}, now);

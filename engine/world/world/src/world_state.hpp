@@ -202,22 +202,23 @@ struct World::State {
     // How far along the ray an object's own shape is met, no farther than the ray goes; its box is met at `box_t`.
     [[nodiscard]] std::optional<ObjectHit> shape_hit(const Ray& ray, std::uint32_t object, double box_t) const;
     [[nodiscard]] std::optional<ObjectHit> own_shape_hit(const Ray& ray, std::uint32_t object) const;
+    [[nodiscard]] bool is_ignored(const QueryFilter& filter, std::uint32_t object) const;
     // Visits objects whose boxes the ray meets; the visitor answers how far along the ray others are of interest.
-    void visit_along(const Ray& ray, std::uint32_t layers, collide::RayVisitor visit) const;
+    void visit_along(const Ray& ray, const QueryFilter& filter, collide::RayVisitor visit) const;
     // Visits objects whose boxes are within `distance` of `bounds`, and some others.
-    void visit_near(const Aabb& bounds, double distance, std::uint32_t layers, collide::NearVisitor visit) const;
+    void visit_near(const Aabb& bounds, double distance, const QueryFilter& filter, collide::NearVisitor visit) const;
     void visit_bounded_near(const Aabb& bounds, double distance, std::uint32_t layers,
                             collide::NearVisitor visit) const;
     template <class Shape>
-    void overlap(const Shape& shape, Vector<ObjectRef>& found, std::uint32_t layers) const;
+    void overlap(const Shape& shape, Vector<ObjectRef>& found, const QueryFilter& filter) const;
     // How far an object is, and the nearest points: first the shape's, then the object's.
     using GapTo = FunctionRef<collide::Distance(std::uint32_t object, double limit)>;
     // `bounds` are around the shape.
-    [[nodiscard]] std::optional<ClosestObject> closest(const Aabb& bounds, double max_distance, std::uint32_t layers,
-                                                       GapTo gap_to_object) const;
+    [[nodiscard]] std::optional<ClosestObject> closest(const Aabb& bounds, double max_distance,
+                                                       const QueryFilter& filter, GapTo gap_to_object) const;
     template <class Shape>
     [[nodiscard]] std::optional<ClosestObject> closest(const Shape& shape, double max_distance,
-                                                       std::uint32_t layers) const;
+                                                       const QueryFilter& filter) const;
 };
 
 }  // namespace crofton

@@ -370,14 +370,27 @@ CROFTON_API crofton_status crofton_view_result_list(const crofton_view_result* r
                                                     size_t first, crofton_object_ref* objects, uint32_t* view_masks,
                                                     size_t capacity);
 
-/* Sets hits[i] to the nearest hit of rays[i]. Tests an object's shape, or if it has none, its mesh's triangles, its
+/* Limits rays, overlaps, nearest objects and casts to some of the objects. */
+typedef struct crofton_query_filter {
+    size_t size;
+    uint32_t layers; /* all; finds objects that share a layer with this mask */
+    /* Finds none of these, for example the object that asks and what it carries; NULL if ignored_count is 0. Each
+     * object that comes into question is compared with all of them, so pass a few, and use layers for many. A stale
+     * handle has no effect. */
+    const crofton_object* ignored;
+    size_t ignored_count;
+} crofton_query_filter;
+
+CROFTON_API crofton_query_filter crofton_default_query_filter(void);
+
+/* Sets hits[i] to the nearest hit of rays[i]. `filter` or NULL: all objects; so in the functions below. Tests an object's shape, or if it has none, its mesh's triangles, its
  * sphere or its box.
  */
 CROFTON_API crofton_status crofton_world_raycast(const crofton_world* world, const crofton_ray* rays, size_t count,
-                                                 uint32_t layer_mask, crofton_object_hit* hits);
+                                                 const crofton_query_filter* filter, crofton_object_hit* hits);
 /* Sets *hit to 1 if the ray hits anything, else to 0. */
 CROFTON_API crofton_status crofton_world_raycast_any(const crofton_world* world, const crofton_ray* ray,
-                                                     uint32_t layer_mask, int* hit);
+                                                     const crofton_query_filter* filter, int* hit);
 
 CROFTON_API crofton_status crofton_found_create(crofton_found** found);
 CROFTON_API crofton_status crofton_found_destroy(crofton_found* found);
@@ -390,16 +403,16 @@ CROFTON_API crofton_status crofton_found_hits(const crofton_found* found, const 
 /* Lists the nearest hit of each object that the ray hits, in order of t, then of index. Read it by crofton_found_hits.
  */
 CROFTON_API crofton_status crofton_world_raycast_all(const crofton_world* world, const crofton_ray* ray,
-                                                     uint32_t layer_mask, crofton_found* found);
+                                                     const crofton_query_filter* filter, crofton_found* found);
 /* Finds the objects that overlap the probe, in order of index: their shapes, or if they have none, their meshes'
  * triangles, their spheres or boxes. A probe inside a closed mesh overlaps it if `containment` of the world's options
  * is set. CROFTON_UNSUPPORTED: a half-space. */
 CROFTON_API crofton_status crofton_world_overlap(const crofton_world* world, const crofton_query_shape* probe,
-                                                 uint32_t layer_mask, crofton_found* found);
+                                                 const crofton_query_filter* filter, crofton_found* found);
 /* Fills a struct whose `size` is set: the object nearest to the probe, as above, no farther than max_distance, which
  * may be infinite. If several are equally near, the one with the lowest index. */
 CROFTON_API crofton_status crofton_world_closest(const crofton_world* world, const crofton_query_shape* probe,
-                                                 double max_distance, uint32_t layer_mask,
+                                                 double max_distance, const crofton_query_filter* filter,
                                                  crofton_closest_object* closest);
 
 /* Returns the pairs of objects whose boxes or spheres overlap, in order; valid until the next update. */
@@ -413,7 +426,7 @@ CROFTON_API crofton_status crofton_world_contacts(const crofton_world* world, co
  * a closed mesh meets it from inside. Fills a struct whose `size` is set. `options` or NULL. */
 CROFTON_API crofton_status crofton_world_cast(const crofton_world* world, const crofton_placed* probe,
                                               const crofton_motion* motion, const crofton_cast_options* options,
-                                              uint32_t layer_mask, crofton_shape_hit* hit);
+                                              const crofton_query_filter* filter, crofton_shape_hit* hit);
 
 /* Occluders: geometry by which a mesh's objects hide others. Guide: docs/occlude.md. */
 

@@ -45,6 +45,10 @@ template <>
     return crofton_default_region_options();
 }
 template <>
+[[nodiscard]] inline crofton_query_filter default_of<crofton_query_filter>() {
+    return crofton_default_query_filter();
+}
+template <>
 [[nodiscard]] inline crofton_view_request default_of<crofton_view_request>() {
     return crofton_default_view_request();
 }

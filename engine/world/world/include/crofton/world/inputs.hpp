@@ -253,4 +253,12 @@ struct ViewRequest {
     cull::CullMode mode = cull::CullMode::exact;
 };
 
+// Limits rays, overlaps, nearest objects and casts to some of the objects.
+struct QueryFilter {
+    std::uint32_t layers = ~0u;  // finds objects that share a layer with this mask
+    // Finds none of these, for example the object that asks and what it carries. Each object that comes into question
+    // is compared with all of them, so pass a few, and use layers for many. A stale handle has no effect.
+    std::span<const ObjectHandle> ignored = {};
+};
+
 }  // namespace crofton

@@ -231,10 +231,10 @@ class World {
     //
     // A ray that begins inside a shape, sphere or box hits it at t = 0, without a normal. A direction may have any
     // length except 0. An invalid ray hits nothing. No answer contains objects removed since the last update.
-    [[nodiscard]] std::optional<ObjectHit> raycast(const Ray& ray, std::uint32_t layers = ~0u) const;
-    [[nodiscard]] bool raycast_any(const Ray& ray, std::uint32_t layers = ~0u) const;
+    [[nodiscard]] std::optional<ObjectHit> raycast(const Ray& ray, const QueryFilter& filter = {}) const;
+    [[nodiscard]] bool raycast_any(const Ray& ray, const QueryFilter& filter = {}) const;
     // Lists the nearest hit of each object that the ray hits, in order of t, then of index.
-    void raycast_all(const Ray& ray, Vector<ObjectHit>& hits, std::uint32_t layers = ~0u) const;
+    void raycast_all(const Ray& ray, Vector<ObjectHit>& hits, const QueryFilter& filter = {}) const;
 
     // Lists the objects that overlap the probe, in order of index. Tests an object's shape (as convex::intersects), or
     // if it has none, its mesh's triangles, its sphere or its box.
@@ -246,12 +246,12 @@ class World {
     //
     // An invalid box, and a sphere or capsule with NaN or numbers beyond kMaxCoordinate, overlaps nothing; closest()
     // finds nothing for it.
-    void overlap(const Obb& probe, Vector<ObjectRef>& found, std::uint32_t layers = ~0u) const;
-    void overlap(const Sphere& probe, Vector<ObjectRef>& found, std::uint32_t layers = ~0u) const;
-    void overlap(const collide::Capsule& probe, Vector<ObjectRef>& found, std::uint32_t layers = ~0u) const;
+    void overlap(const Obb& probe, Vector<ObjectRef>& found, const QueryFilter& filter = {}) const;
+    void overlap(const Sphere& probe, Vector<ObjectRef>& found, const QueryFilter& filter = {}) const;
+    void overlap(const collide::Capsule& probe, Vector<ObjectRef>& found, const QueryFilter& filter = {}) const;
     // The same for any shape except a half-space. A shape with an invalid pose overlaps nothing.
     void overlap(const convex::Shape& probe, const RigidTransform& pose, Vector<ObjectRef>& found,
-                 std::uint32_t layers = ~0u) const;
+                 const QueryFilter& filter = {}) const;
     // Returns the first object that a moving shape meets, by convex::cast against each object's shape, or if it has
     // none, its mesh's triangles, its sphere or its box. The objects are at rest.
     //
@@ -261,19 +261,19 @@ class World {
     // half-space; an invalid pose.
     [[nodiscard]] Result<std::optional<ShapeHit>> cast(const convex::Shape& probe, const RigidTransform& pose,
                                                        const convex::Motion& motion, const convex::CastOptions& options,
-                                                       std::uint32_t layers = ~0u) const;
+                                                       const QueryFilter& filter = {}) const;
     // Returns the object that is nearest to the probe, at most max_distance away; if several are equally near, the one
     // with the lowest index. Tests the same shapes as overlap(): the distance is 0 iff the probe overlaps the object.
     [[nodiscard]] std::optional<ClosestObject> closest(const Sphere& probe, double max_distance,
-                                                       std::uint32_t layers = ~0u) const;
+                                                       const QueryFilter& filter = {}) const;
     [[nodiscard]] std::optional<ClosestObject> closest(const Obb& probe, double max_distance,
-                                                       std::uint32_t layers = ~0u) const;
+                                                       const QueryFilter& filter = {}) const;
     [[nodiscard]] std::optional<ClosestObject> closest(const collide::Capsule& probe, double max_distance,
-                                                       std::uint32_t layers = ~0u) const;
+                                                       const QueryFilter& filter = {}) const;
     // The same for any shape except a half-space, within the bounds that convex::distance proves. Returns nothing for
     // an invalid pose.
     [[nodiscard]] std::optional<ClosestObject> closest(const convex::Shape& probe, const RigidTransform& pose,
-                                                       double max_distance, std::uint32_t layers = ~0u) const;
+                                                       double max_distance, const QueryFilter& filter = {}) const;
 
     // pairs() returns the pairs of objects whose boxes or spheres overlap, in order. contacts() returns the pairs that
     // touch, and those that have ended touching, in order. Both are of the last update.
