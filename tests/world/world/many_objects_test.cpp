@@ -102,7 +102,7 @@ TEST_SUITE("world/many objects") {
         CHECK(replaced(false) > replaced(true) + kAll * sizeof(Obb));
     }
 
-    TEST_CASE("to reserve fewer than there are, or nothing, changes nothing; too many is an error") {
+    TEST_CASE("to reserve fewer than there are, or nothing, changes nothing, and too many is an error") {
         World world;
         const auto descriptions = random_descriptions(100, 9);
         std::vector<ObjectHandle> handles(descriptions.size());
