@@ -2,6 +2,7 @@
 // World in C: what is refused. world_agreement_test.cpp compares answers.
 #include <cstddef>
 #include <cstring>
+#include <vector>
 
 #include "world_fixture.hpp"
 
@@ -34,6 +35,9 @@ TEST_SUITE("capi/world") {
         for (const std::uint32_t members : {256u, ~0u, CROFTON_SET_BOUND | CROFTON_SET_SHAPE | 0u,
                                             CROFTON_SET_MESH | CROFTON_SET_OCCLUDES | 0u, CROFTON_SET_MESH | 0u})
             CHECK(crofton_world_set(world, s.box, members, &description) == bad);
+        crofton_object added{};
+        CHECK(crofton_world_add_many(world, nullptr, 1, &added) == bad);
+        CHECK(crofton_world_add_many(world, &description, 1, nullptr) == bad);
         CHECK(crofton_world_set_boxes(world, nullptr, 0, &box, 0, 1) == bad);
         CHECK(crofton_world_set_boxes(world, &s.box, 0, nullptr, 0, 1) == bad);
         CHECK(crofton_world_set_transforms(world, nullptr, 0, &place, 0, 1) == bad);
@@ -405,5 +409,39 @@ TEST_SUITE("capi/world") {
               CROFTON_INVALID_ARGUMENT);
         CHECK(crofton_view_result_list(s.in_views.get(), s.world.get(), 0, refs, nullptr, 2) ==
               CROFTON_INVALID_ARGUMENT);
+    }
+
+    TEST_CASE("of many objects the valid ones are added, and the first invalid one is named") {
+        const WorldHandle world = make_world();
+        REQUIRE(crofton_world_reserve(world.get(), 100) == CROFTON_OK);
+        CHECK(crofton_world_reserve(world.get(), (std::size_t{1} << 30) + 1) == CROFTON_OUT_OF_RANGE);
+        const crofton_bound good = box_bound(box_at(1, 2, 3));
+        crofton_bound bad = good;
+        bad.box.center[1] = kNotANumber;
+        std::vector<crofton_object_description> descriptions(5, sized<crofton_object_description>());
+        for (std::size_t i = 0; i < 5; ++i) {
+            descriptions[i].bound = i % 2 == 1 ? &bad : &good;
+            descriptions[i].user = 10 + i;
+            descriptions[i].hidden = i == 4 ? 1 : 0;
+        }
+        crofton_object objects[5];
+        std::memset(objects, 0xff, sizeof objects);
+        CHECK(crofton_world_add_many(world.get(), descriptions.data(), 5, objects) == CROFTON_NON_FINITE);
+        CHECK(crofton_last_error_item() == 1);
+        update(world);
+        for (std::size_t i = 0; i < 5; ++i) {
+            auto info = sized<crofton_object_info>();
+            const bool is_there = crofton_world_get_object(world.get(), objects[i], &info) == CROFTON_OK;
+            CHECK(is_there == (i % 2 == 0));
+            if (is_there)
+                CHECK(info.user == 10 + i);
+            else
+                CHECK((objects[i].index == 0 && objects[i].generation == 0));
+        }
+        CHECK(crofton_world_add_many(world.get(), nullptr, 0, nullptr) == CROFTON_OK);
+        descriptions[1].size = offsetof(crofton_object_description, shape);
+        descriptions[1].bound = &good;
+        CHECK(crofton_world_add_many(world.get(), descriptions.data(), 2, objects) == CROFTON_WRONG_SIZE);
+        CHECK(crofton_last_error_item() == 1);
     }
 }

@@ -23,6 +23,8 @@ void refuse_world_changes(Table& table) {
     CROFTON_REFUSE(crofton_world_set_node_layers);
     CROFTON_REFUSE(crofton_world_set_node_transforms);
     CROFTON_REFUSE(crofton_world_add);
+    CROFTON_REFUSE(crofton_world_add_many);
+    CROFTON_REFUSE(crofton_world_reserve);
     CROFTON_REFUSE(crofton_world_remove);
     CROFTON_REFUSE(crofton_world_set_transforms);
     CROFTON_REFUSE(crofton_world_set_boxes);
@@ -141,6 +143,7 @@ const std::set<std::string> kWithoutHandle = {
     "shape_closest_point",
     "shape_contacts_create",
     "shape_create",
+    "shape_create_with_jobs",
     "shape_outline",
     "shape_parts_near",
     "shape_raycast",

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What a World is told.
 #include <pybind11/stl.h>
+#include <algorithm>
 
 #include "shapes.hpp"
 #include "world.hpp"
@@ -92,19 +93,23 @@ py::array add_all(PyWorld& to, std::size_t count, const py::object& users, F&& d
         if (static_cast<std::size_t>(held.size()) != count)
             raise({ErrorCode::invalid_argument, kNoItem, "users: as many as objects are expected"});
     }
-    std::vector<ObjectHandle> handles;
-    handles.reserve(count);
+    std::vector<ObjectHandle> handles(count);
     auto failed = to.change([&](World& world) -> Result<void> {
-        for (std::size_t i = 0; i < count; ++i) {
-            ObjectDescription one = description(i);
-            if (held.size() > 0) one.user = held.data()[i];
-            auto added = world.add(one);
-            if (!added) {
-                for (const ObjectHandle handle : handles) (void)world.remove(handle);
-                added.error().item = i;
-                return added.error();
+        constexpr std::size_t kAtOnce = 1024;
+        std::vector<ObjectDescription> some(std::min(count, kAtOnce));
+        for (std::size_t begin = 0; begin < count; begin += kAtOnce) {
+            const std::size_t size = std::min(kAtOnce, count - begin);
+            for (std::size_t i = 0; i < size; ++i) {
+                some[i] = description(begin + i);
+                if (held.size() > 0) some[i].user = held.data()[begin + i];
             }
-            handles.push_back(*added);
+            auto added = world.add(std::span<const ObjectDescription>(some).first(size),
+                                   std::span(handles).subspan(begin, size));
+            if (added) continue;
+            for (const ObjectHandle handle : handles)
+                if (!handle.is_null()) (void)world.remove(handle);
+            added.error().item += begin;
+            return added;
         }
         return {};
     });
@@ -340,6 +345,13 @@ void bind_world_changes(py::module_& module, py::class_<PyWorld>& type) {
             "it.")
         .def("set_shape", &set_shape, py::arg("object"), py::arg("shape"),
              "Gives an object a Shape, which queries and contacts use instead of its mesh or bound. None removes it.")
+        .def(
+            "reserve",
+            [](PyWorld& to, std::size_t objects) {
+                value_of(to.change([&](World& world) { return world.reserve(objects); }));
+            },
+            py::arg("objects"),
+            "Takes memory for so many objects in all, so that none is copied to larger memory later.")
         .def("add_boxes", &add_boxes, py::arg("boxes"), py::kw_only(), py::arg("users") = py::none(),
              py::arg("layers") = ~0u, py::arg("collides_with") = ~0u,
              "Adds one object per box, all or none. Returns an array of handle_dtype.")

@@ -126,6 +126,21 @@ def test_moves_in_arrays(world, random):
     assert world.user_of(crofton.ObjectHandle(int(handles[3]["index"]), int(handles[3]["generation"]))) == 1003
 
 
+def test_many_boxes_are_added_all_or_none(world, random):
+    boxes = crofton.boxes(random.uniform(-50, 50, (3000, 3)), 1)
+    world.reserve(6000)
+    boxes["center"][2500, 1] = np.nan
+    with pytest.raises(crofton.Error) as raised:
+        world.add_boxes(boxes)
+    assert raised.value.item == 2500 and len(world) == 0
+    boxes["center"][2500, 1] = 0
+    handles = world.add_boxes(boxes)
+    world.update()
+    assert len(world) == 3000 and len(set(handles["index"])) == 3000
+    with pytest.raises(crofton.Error):
+        world.reserve(2**31)
+
+
 def test_instances_in_arrays(world, cube):
     transforms = np.array([at(0, 0, -5 * i) for i in range(1, 6)])
     handles = world.add_instances(world.add_mesh(*cube), transforms)

@@ -79,12 +79,14 @@ convex::Sides sides_of(const Description& given) {
     return given.front_only != 0 ? convex::Sides::front : convex::Sides::both;
 }
 
-crofton_status create_mesh(const Description& given, crofton_shape** shape, const char* function) {
+crofton_status create_mesh(const Description& given, const crofton_jobs* jobs, crofton_shape** shape,
+                           const char* function) {
     TriangleMesh copy;
     CROFTON_CHECK(to_mesh(given.mesh, function, copy));
     return create_shape(shape, function, [&](ShapeData& data) -> Result<convex::Shape> {
         if (const auto valid = validate(copy); !valid) return valid.error();
-        auto tree = mesh::MeshTree::build(copy, {.rays = true});
+        HostJobs executor(jobs);
+        auto tree = mesh::MeshTree::build(copy, {.rays = true}, executor);
         if (!tree) return tree.error();
         if (!tree->rejected().empty())
             return fail(ErrorCode::out_of_range, tree->rejected().front(), "mesh: a vertex is beyond 1e12");
@@ -140,6 +142,30 @@ crofton_status create_compound(const Description& given, crofton_shape** shape, 
     });
 }
 
+crofton_status create(const Description* description, const crofton_jobs* jobs, crofton_shape** shape,
+                      const char* function) {
+    CROFTON_CHECK(check_pointer(shape, function));
+    CROFTON_CHECK(check_jobs(jobs, function));
+    Description given;
+    CROFTON_CHECK(read_growing(description, function, given));
+    switch (given.kind) {
+        case CROFTON_SHAPE_HULL:
+            return create_hull(given, shape, function);
+        case CROFTON_SHAPE_MESH:
+            return create_mesh(given, jobs, shape, function);
+        case CROFTON_SHAPE_HEIGHT_FIELD:
+            return create_height_field(given, shape, function);
+        case CROFTON_SHAPE_COMPOUND:
+            return create_compound(given, shape, function);
+        case CROFTON_SHAPE_ROUNDED:
+            return create_rounded(given, shape, function);
+        default:
+            if (given.kind > CROFTON_SHAPE_ROUNDED)
+                return report(CROFTON_INVALID_ARGUMENT, function, "unknown kind of shape");
+            return create_shape(shape, function, [&](ShapeData&) { return make_simple(given); });
+    }
+}
+
 void give_bounds(const Aabb& bounds, crofton_shape_info& info) {
     std::copy_n(&bounds.min.x, 3, info.min);
     std::copy_n(&bounds.max.x, 3, info.max);
@@ -148,25 +174,12 @@ void give_bounds(const Aabb& bounds, crofton_shape_info& info) {
 }  // namespace
 
 crofton_status crofton_shape_create(const crofton_shape_description* description, crofton_shape** shape) {
-    CROFTON_CHECK(check_pointer(shape, __func__));
-    Description given;
-    CROFTON_CHECK(read_growing(description, __func__, given));
-    switch (given.kind) {
-        case CROFTON_SHAPE_HULL:
-            return create_hull(given, shape, __func__);
-        case CROFTON_SHAPE_MESH:
-            return create_mesh(given, shape, __func__);
-        case CROFTON_SHAPE_HEIGHT_FIELD:
-            return create_height_field(given, shape, __func__);
-        case CROFTON_SHAPE_COMPOUND:
-            return create_compound(given, shape, __func__);
-        case CROFTON_SHAPE_ROUNDED:
-            return create_rounded(given, shape, __func__);
-        default:
-            if (given.kind > CROFTON_SHAPE_ROUNDED)
-                return report(CROFTON_INVALID_ARGUMENT, __func__, "unknown kind of shape");
-            return create_shape(shape, __func__, [&](ShapeData&) { return make_simple(given); });
-    }
+    return create(description, nullptr, shape, __func__);
+}
+
+crofton_status crofton_shape_create_with_jobs(const crofton_shape_description* description, const crofton_jobs* jobs,
+                                              crofton_shape** shape) {
+    return create(description, jobs, shape, __func__);
 }
 
 crofton_status crofton_shape_destroy(crofton_shape* shape) {

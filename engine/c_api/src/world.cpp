@@ -158,9 +158,9 @@ crofton_status capi::to_bound(const crofton_bound& given, const char* function, 
 
 namespace {
 
-crofton_status to_object_description(const crofton_object_description* argument, const char* function,
+crofton_status to_object_description(const crofton_object_description* first, std::size_t i, const char* function,
                                      crofton_object_description& given, ObjectDescription& description) {
-    CROFTON_CHECK(read_growing(argument, function, given));
+    CROFTON_CHECK(read_growing_at(first, i, function, given));
     if (given.has_mesh) description.mesh = to_handle(given.mesh);
     if (given.has_node) description.node = to_handle(given.node);
     if (given.transform) description.transform = to_transform(*given.transform);
@@ -191,6 +191,24 @@ crofton_status set_shape(crofton_world& world, crofton_object object, const crof
     CROFTON_CHECK(status_of(world.world.set_shape(to_handle(object), &*shape->data->shape), function));
     world.keep(object.index, shape->data);
     return CROFTON_OK;
+}
+
+// Adds the object of the i-th description of an array.
+crofton_status add_one(crofton_world& world, const crofton_object_description* first, std::size_t i,
+                       crofton_object& object, const char* function) {
+    crofton_object_description given;
+    ObjectDescription made;
+    CROFTON_CHECK(to_object_description(first, i, function, given, made));
+    if (!given.shape) {
+        CROFTON_CHECK(hand_out(world.world.add(made), &object, function));
+    } else {
+        const SharedUse use_shape(given.shape, function);
+        if (use_shape.failed()) return use_shape.status();
+        made.shape = &*given.shape->data->shape;
+        CROFTON_CHECK(hand_out(world.world.add(made), &object, function));
+        world.keep(object.index, given.shape->data);
+    }
+    return given.hidden ? status_of(world.world.set_hidden(to_handle(object), true), function) : CROFTON_OK;
 }
 
 // At most one of the members that may be refused.
@@ -304,19 +322,28 @@ crofton_status crofton_world_add(crofton_world* world, const crofton_object_desc
     const ExclusiveUse use(world, __func__);
     if (use.failed()) return use.status();
     CROFTON_CHECK(check_pointer(object, __func__));
-    crofton_object_description given;
-    ObjectDescription made;
-    CROFTON_CHECK(to_object_description(description, __func__, given, made));
-    if (!given.shape) {
-        CROFTON_CHECK(hand_out(world->world.add(made), object, __func__));
-    } else {
-        const SharedUse use_shape(given.shape, __func__);
-        if (use_shape.failed()) return use_shape.status();
-        made.shape = &*given.shape->data->shape;
-        CROFTON_CHECK(hand_out(world->world.add(made), object, __func__));
-        world->keep(object->index, given.shape->data);
+    return add_one(*world, description, 0, *object, __func__);
+}
+
+crofton_status crofton_world_add_many(crofton_world* world, const crofton_object_description* descriptions,
+                                      size_t count, crofton_object* objects) {
+    const ExclusiveUse use(world, __func__);
+    if (use.failed()) return use.status();
+    if (count == 0) return CROFTON_OK;
+    CROFTON_CHECK(check_pointer(objects, __func__));
+    CROFTON_CHECK(check_growing(descriptions, __func__));
+    std::size_t failed = count;  // the first
+    for (std::size_t i = 0; i < count; ++i) {
+        objects[i] = {};
+        if (add_one(*world, descriptions, i, objects[i], __func__) != CROFTON_OK) failed = std::min(failed, i);
     }
-    return given.hidden ? status_of(world->world.set_hidden(to_handle(*object), true), __func__) : CROFTON_OK;
+    // Fails again, so that its error is the last.
+    return failed == count ? CROFTON_OK
+                           : of_item(add_one(*world, descriptions, failed, objects[failed], __func__), failed);
+}
+
+crofton_status crofton_world_reserve(crofton_world* world, size_t objects) {
+    return change(world, __func__, [&](World& w) { return w.reserve(objects); });
 }
 
 crofton_status crofton_world_remove(crofton_world* world, crofton_object object) {

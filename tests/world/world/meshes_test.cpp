@@ -271,4 +271,62 @@ TEST_SUITE("world/meshes") {
         REQUIRE(world.update().has_value());
         CHECK(world.transform_of(fresh)->translation.x == 7.0);
     }
+
+    TEST_CASE("a large mesh is built by all threads, small ones side by side, and answers are the same") {
+        // Serial, but says that it has four threads. Counts the calls for more than one mesh or part.
+        class FourThreads final : public Executor {
+          public:
+            [[nodiscard]] unsigned concurrency() const override { return 4; }
+            void parallel_for(std::size_t count, std::size_t grain, RangeTask task) override {
+                calls += count > grain ? 1 : 0;
+                for (std::size_t begin = 0; begin < count; begin += grain)
+                    task(begin, std::min(begin + grain, count), static_cast<unsigned>(begin / grain % 4));
+            }
+            std::size_t calls = 0;
+        };
+        TriangleMesh hills;
+        constexpr std::uint32_t kSide = 150;
+        for (std::uint32_t z = 0; z <= kSide; ++z)
+            for (std::uint32_t x = 0; x <= kSide; ++x)
+                hills.positions.push_back({0.1f * static_cast<float>(x),
+                                           std::sin(0.3f * static_cast<float>(x * z % 97)),
+                                           0.1f * static_cast<float>(z)});
+        for (std::uint32_t z = 0; z < kSide; ++z)
+            for (std::uint32_t x = 0; x < kSide; ++x) {
+                const std::uint32_t a = z * (kSide + 1) + x, c = a + kSide + 1;
+                for (const std::uint32_t corner : {a, c, a + 1, a + 1, c, c + 1}) hills.indices.push_back(corner);
+            }
+        const TriangleMesh cube = cube_mesh();
+        const auto update = [&](World& world, Executor& executor, std::initializer_list<const TriangleMesh*> meshes) {
+            for (const TriangleMesh* mesh : meshes) {
+                const MeshHandle handle = world.add_mesh(described(*mesh)).value();
+                const double x = 20.0 * static_cast<double>(world.object_count());
+                REQUIRE(world.add({.mesh = handle, .transform = at({x, 0.0, 0.0})}).has_value());
+                REQUIRE(world.add({.mesh = handle, .transform = at({x + 0.3, 0.2, 0.1})}).has_value());
+            }
+            REQUIRE(world.update(executor).has_value());
+        };
+        FourThreads few, many;
+        World small, large, serial;
+        update(small, few, {&cube});
+        update(large, many, {&cube, &hills, &cube});
+        CHECK(many.calls > few.calls + 1);
+        ThreadPool pool(3);
+        World threaded;
+        update(threaded, pool, {&cube, &hills, &cube});
+        update(serial, serial_executor(), {&cube, &hills, &cube});
+        for (World* other : {&large, &threaded}) {
+            REQUIRE(other->contacts().size() == serial.contacts().size());
+            for (std::size_t i = 0; i < serial.contacts().size(); ++i) {
+                CHECK(other->contacts()[i].triangles.size() == serial.contacts()[i].triangles.size());
+                CHECK(other->contacts()[i].points.size() == serial.contacts()[i].points.size());
+            }
+            for (int n = 0; n < 200; ++n) {
+                const Ray ray{{40.0 + 0.07 * n, 9.0, 0.07 * n}, {0.01 * n - 1.0, -5.0, 0.3}};
+                const auto a = other->raycast(ray), b = serial.raycast(ray);
+                REQUIRE(a.has_value() == b.has_value());
+                if (a) CHECK((a->t == b->t && a->normal == b->normal && a->object.index == b->object.index));
+            }
+        }
+    }
 }

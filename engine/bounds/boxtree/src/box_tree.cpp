@@ -56,6 +56,13 @@ Result<void> BoxTree::check_item(ItemId item) const {
     return {};
 }
 
+Result<void> BoxTree::reserve(std::size_t items) {
+    if (items > kMaxItems) return fail(ErrorCode::out_of_range, kNoItem, "box tree: more than 2^30 items");
+    items_->reserve(items);
+    structure_->reserve_items(items);
+    return {};
+}
+
 Result<void> BoxTree::move(ItemId item, const Obb& box) {
     return move(std::span(&item, 1), std::span(&box, 1));
 }

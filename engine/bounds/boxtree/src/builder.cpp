@@ -12,7 +12,7 @@ namespace {
 constexpr std::uint32_t kClusterRow = kWidth * kWidth;  // items of a cluster, times the leaves of a node
 constexpr double kCells = 1u << 20;
 constexpr std::size_t kWorkOfUnit = 16;  // the unit of budgets in the splitter's
-constexpr std::size_t kCrowd = 256;  // items; a cell with more of them is sorted by smaller cells
+constexpr std::size_t kCrowd = 256;      // items; a cell with more of them is sorted by smaller cells
 
 // Moves ten bits to every third place.
 std::uint32_t spread(std::uint32_t v) {

@@ -142,7 +142,7 @@ void Structure::begin_steps(const Topology& topology) {
     axes_.resize(std::max(axes_.size(), topology.axes.size()));
     // With room for what changes will add: where items change so much that the tree is rebuilt, it will grow.
     reserve(with_room(topology.nodes.size()), with_room(topology.leaves.size()));
-    item_slots_.reserve(with_room(items_.size()));
+    item_slots_.reserve(std::max(with_room(items_.size()), items_.capacity()));
 }
 
 void Structure::add_items(ItemId end) {

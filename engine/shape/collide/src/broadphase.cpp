@@ -269,6 +269,12 @@ void Broadphase::State::begin_table() {
     table_is_current = true;
 }
 
+void Broadphase::reserve(std::size_t items) {
+    state_->tree.reserve(items);
+    state_->table.reserve(items);
+    state_->is_moved.reserve(items);
+}
+
 void Broadphase::release_scratch() {
     state_->release_scratch();
 }

@@ -18,6 +18,7 @@ class ItemTree {
 
     void clear();
     // Items are below `count`. New ones are not in the tree. Requires that those that fall away are not.
+    void reserve(std::size_t count) { places_.reserve_pages(count); }
     void resize(std::size_t count);
     [[nodiscard]] std::size_t item_count() const { return places_.size(); }
     [[nodiscard]] std::size_t size() const { return size_; }  // items in the tree

@@ -17,6 +17,7 @@ class PairTable {
     void assign(std::size_t item_count, std::span<const IdPair> pairs);
     // New items have no pairs. Requires that those that fall away have none.
     void resize(std::size_t item_count);
+    void reserve(std::size_t item_count) { first_.reserve_pages(item_count); }
     [[nodiscard]] std::size_t size() const { return size_; }
 
     void add(const IdPair& pair);

@@ -397,6 +397,12 @@ Result<void> ContactFinder::update(const ObjectTable& table, SpatialIndex& index
     return found;
 }
 
+void ContactFinder::reserve(std::size_t objects) {
+    if (has_own_boxes_) boxes_.reserve_pages(objects);
+    filters_.reserve_pages(objects);
+    broadphase_.reserve(objects);
+}
+
 void ContactFinder::release_scratch() {
     release(moved_, began_pairs_, ended_pairs_, touched_, touches_, workers_, ended_before_, added_);
     boxes_.finish();

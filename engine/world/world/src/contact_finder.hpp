@@ -98,6 +98,8 @@ class ContactFinder {
     Result<void> update(const ObjectTable& table, SpatialIndex& index, const scene::Scene& scene, Shapes& shapes,
                         const ObjectShapes& shapes_of, const PairChanges& changes, ShapeToucher touch_shape,
                         Executor& executor);
+    // Takes memory for so many objects.
+    void reserve(std::size_t objects);
     // Nothing has changed since the update before.
     void stay();
     // After an update: gives back what looking at many pairs has taken. touched() is empty then.

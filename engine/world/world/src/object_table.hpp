@@ -83,6 +83,18 @@ struct ObjectTable {
         users.set(index, user);
         ++count;
     }
+    void reserve(std::size_t size) {
+        objects.reserve_pages(size);
+        generations.reserve_pages(size);
+        users.reserve_pages(size);
+        show_names();
+    }
+    void make_room(std::size_t more) {
+        objects.make_room(more);
+        generations.make_room(more);
+        users.make_room(more);
+        show_names();
+    }
     // Handles become stale at once; the index is free once the spatial index has removed it too.
     void remove(std::uint32_t index) {
         objects.edit(index).alive = false;
@@ -121,18 +133,14 @@ class MoverTable {
     // its shape. Returns how many.
     std::size_t list_entries(const Strided<ObjectHandle>& handles, const Strided<Obb>& boxes, std::size_t begin,
                              std::size_t end, std::uint32_t* entries) const {
-        // In registers: what is written might be them.
-        const Key* const keys = keys_.data();
-        const std::size_t key_count = keys_.size();
         std::size_t count = 0;
         if (const std::uint32_t first = first_in_row(handles, begin, end); first != kNoIndex)
             for (; count < end - begin; ++count) entries[count] = first + static_cast<std::uint32_t>(count);
         for (std::size_t i = begin + count; i < end; ++i, ++count) {
             const ObjectHandle handle = handles[i];
-            if (handle.index >= key_count) break;
-            const Key key = keys[handle.index];
-            if (key.generation != handle.generation || key.entry == kNoIndex) break;
-            entries[count] = key.entry;
+            const Key* const key = find(handle.index);
+            if (key == nullptr || key->generation != handle.generation || key->entry == kNoIndex) break;
+            entries[count] = key->entry;
         }
         for (std::size_t n = 0; !least_.empty() && n < count; ++n)
             if (entries[n] < least_.size() && !covers(boxes[begin + n], least_[entries[n]])) return n;
@@ -141,34 +149,46 @@ class MoverTable {
     // `least_half_extents` as ObjectShapes tells them. kNoIndex: the object is no such box.
     void set(ObjectHandle handle, std::uint32_t entry, const glm::vec3& least_half_extents) {
         if (entry == kNoIndex) return forget(handle.index);
-        if (handle.index >= keys_.size()) resize(keys_, handle.index + std::size_t{1});
-        keys_[handle.index] = {entry, handle.generation};
+        const std::size_t page = handle.index / kPage;
+        if (page >= pages_.size()) pages_.resize(page + 1);
+        if (pages_[page].empty()) pages_[page].resize(kPage);
+        pages_[page][handle.index % kPage] = {entry, handle.generation};
         if (entry >= least_.size() && least_half_extents.x >= 0.0f)
             resize(least_, entry + std::size_t{1}, kAnyHalfExtents);
         if (entry < least_.size()) least_[entry] = least_half_extents;
     }
     void forget(std::uint32_t object) {
-        if (object < keys_.size()) keys_[object].entry = kNoIndex;
+        if (find(object) != nullptr) pages_[object / kPage][object % kPage].entry = kNoIndex;
     }
 
   private:
+    struct Key {  // as a handle
+        std::uint32_t entry = kNoIndex, generation = 0;
+    };
+    static constexpr std::size_t kPage = 4096;
     static constexpr glm::vec3 kAnyHalfExtents{-1.0f};
 
-    // The entry of the first handle, where all are boxes in the list with consecutive indices and consecutive entries;
-    // else kNoIndex.
+    [[nodiscard]] const Key* find(std::uint32_t object) const {
+        const std::size_t page = object / kPage;
+        return page < pages_.size() && !pages_[page].empty() ? &pages_[page][object % kPage] : nullptr;
+    }
+
+    // The entry of the first handle, where all are boxes in the list with consecutive entries and consecutive indices
+    // in one page; else kNoIndex.
     [[nodiscard]] std::uint32_t first_in_row(const Strided<ObjectHandle>& handles, std::size_t begin,
                                              std::size_t end) const {
         static_assert(sizeof(ObjectHandle) == 8 && sizeof(Key) == 8 && std::endian::native == std::endian::little);
         const std::size_t count = end - begin;
         if (count == 0 || handles.stride() != sizeof(ObjectHandle)) return kNoIndex;
         const std::uint32_t first = handles[begin].index;
-        if (first >= keys_.size() || count > keys_.size() - first) return kNoIndex;
-        const std::uint32_t entry = keys_[first].entry;
+        const Key* const key_of_first = find(first);
+        if (key_of_first == nullptr || first % kPage + count > kPage) return kNoIndex;
+        const std::uint32_t entry = key_of_first->entry;
         if (entry > kNoIndex - count) return kNoIndex;
         // Without a branch a handle, and as whole words: vectors do it. A handle less its key is the index less the
         // entry, which is that of the first, if generations agree.
         const std::byte* const some = reinterpret_cast<const std::byte*>(&handles[begin]);
-        const std::byte* const keys = reinterpret_cast<const std::byte*>(&keys_[first]);
+        const std::byte* const keys = reinterpret_cast<const std::byte*>(key_of_first);
         std::uint64_t differing = 0;
         for (std::size_t i = 0; i < count; ++i) {
             std::uint64_t handle, key;
@@ -183,11 +203,8 @@ class MoverTable {
         const glm::vec3& half = box.half_extents;
         return half.x >= least.x && half.y >= least.y && half.z >= least.z && is_clearly_rotation(glm::dmat3(box.axes));
     }
-    struct Key {  // as a handle
-        std::uint32_t entry = kNoIndex, generation = 0;
-    };
-    Vector<Key> keys_;         // by object, up to the last that has moved
-    Vector<glm::vec3> least_;  // by entry, up to the last with a shape
+    Vector<Vector<Key>> pages_;  // by object; pages without one that has moved are empty
+    Vector<glm::vec3> least_;    // by entry, up to the last with a shape
 };
 
 [[nodiscard]] inline Sphere sphere_of(const Object& object, const Obb& box) {

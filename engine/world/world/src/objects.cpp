@@ -2,6 +2,7 @@
 // World's objects: adding, changing and removing them.
 #include <algorithm>
 #include <cmath>
+#include <crofton/core/recovery.hpp>
 #include <string>
 
 #include "bound_rules.hpp"
@@ -120,6 +121,39 @@ Result<ObjectHandle> World::add(const ObjectDescription& description) {
     }
     if (description.shape != nullptr) world::require_ok(set_shape(s.table.handle(*item), description.shape));
     return s.table.handle(*item);
+}
+
+Result<void> World::add(Strided<ObjectDescription> descriptions, std::span<ObjectHandle> objects) {
+    if (descriptions.size() != objects.size())
+        return fail(ErrorCode::invalid_argument, kNoItem, "world: there must be as many handles as descriptions");
+    state_->make_room(objects.size());
+    Result<void> first;
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+        auto added = add(descriptions[i]);
+        objects[i] = added ? *added : ObjectHandle();
+        if (added || !first) continue;
+        added.error().item = i;
+        first = added.error();
+    }
+    return first;
+}
+
+Result<void> World::reserve(std::size_t objects) {
+    return detail::recover([&] { return state_->reserve(objects); });
+}
+
+Result<void> World::State::reserve(std::size_t objects) {
+    if (auto reserved = index.reserve(objects); !reserved) return reserved;
+    table.reserve(objects);
+    if (options.pairs) finder.reserve(objects);
+    return {};
+}
+
+void World::State::make_room(std::size_t objects) {
+    table.make_room(objects);
+    // Twice the room at least, so that many calls for few objects copy little.
+    if (staged.size() + objects > staged.capacity())
+        staged.reserve(std::max(staged.size() + objects, 2 * staged.capacity()));
 }
 
 void World::State::mark_removed(std::uint32_t object) {

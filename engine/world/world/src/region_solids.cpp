@@ -138,7 +138,7 @@ void RegionSolids::finish(RegionData& data, std::size_t item_count, Executor& ex
     }
     detail::recoverable_for(executor, data.meshes.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
         for (std::size_t m = begin; m < end; ++m)
-            if (wants_triangles_[m]) data.meshes[m].shape.build(data.meshes[m].triangles, false);
+            if (wants_triangles_[m]) data.meshes[m].shape.build(data.meshes[m].triangles, false, serial_executor());
     });
     data.solid_of_item.assign(item_count, kNoIndex);
     data.solids = std::move(solids_);

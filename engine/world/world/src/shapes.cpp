@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "shapes.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <crofton/convex/shape_maker.hpp>
 #include <crofton/core/error.hpp>
@@ -44,6 +45,7 @@ Vector<std::uint32_t> places_in(const mesh::MeshTree& tree) {
     return places;
 }
 
+constexpr std::size_t kManyTriangles = 4096;
 constexpr double kWornOut = 1.5;  // times the spread at the build: then a tree is built anew
 
 }  // namespace
@@ -57,8 +59,8 @@ bool is_rotation(const glm::dmat3& m) {
     return true;
 }
 
-void MeshShape::build(const TriangleMesh& triangles, bool refittable) {
-    auto built = mesh::MeshTree::build(triangles, {.refittable = refittable, .rays = true});
+void MeshShape::build(const TriangleMesh& triangles, bool refittable, Executor& executor) {
+    auto built = mesh::MeshTree::build(triangles, {.refittable = refittable, .rays = true}, executor);
     detail::give_up_without_memory(built);
     is_usable = built.has_value();
     tree = built ? std::move(*built) : mesh::MeshTree();
@@ -114,13 +116,13 @@ void Shapes::set_mesh(scene::MeshId mesh, bool wants_triangles) {
     meshes_[mesh].deforms = meshes_[mesh].can_refit = false;
 }
 
-void Shapes::update_tree(const TriangleMesh& triangles, Mesh& mesh) {
+void Shapes::update_tree(const TriangleMesh& triangles, Mesh& mesh, Executor& executor) {
     mesh::MeshTree& tree = mesh.shape.tree;
     if (mesh.can_refit && tree.refit(triangles.positions) && spread_of(tree) <= kWornOut * mesh.spread) {
         mesh.shape.bounds = tree.parts().bounds();
         return;
     }
-    mesh.shape.build(triangles, mesh.deforms);
+    mesh.shape.build(triangles, mesh.deforms, executor);
     mesh.can_refit = mesh.shape.is_usable && mesh.deforms;
     if (mesh.can_refit) mesh.spread = spread_of(tree);
 }
@@ -138,8 +140,18 @@ bool Shapes::update(const scene::Scene& scene, Executor& executor) {
         else
             meshes_[mesh].shape = {}, meshes_[mesh].can_refit = false;
     }
-    executor.parallel_for(to_build_.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
-        for (std::size_t i = begin; i < end; ++i) update_tree(scene.mesh(to_build_[i]), meshes_[to_build_[i]]);
+    // A mesh that would keep one thread longer than the others is built by all.
+    std::size_t all = 0;
+    for (const std::uint32_t mesh : to_build_) all += scene.mesh(mesh).indices.size();
+    const std::size_t many = std::max(all / executor.concurrency(), 3 * kManyTriangles);
+    const auto small = std::partition(to_build_.begin(), to_build_.end(),
+                                      [&](std::uint32_t mesh) { return scene.mesh(mesh).indices.size() >= many; });
+    const auto large_count = static_cast<std::size_t>(small - to_build_.begin());
+    for (std::size_t i = 0; i < large_count; ++i)
+        update_tree(scene.mesh(to_build_[i]), meshes_[to_build_[i]], executor);
+    executor.parallel_for(to_build_.size() - large_count, 1, [&](std::size_t begin, std::size_t end, unsigned) {
+        for (std::size_t i = large_count + begin; i < large_count + end; ++i)
+            update_tree(scene.mesh(to_build_[i]), meshes_[to_build_[i]], serial_executor());
     });
     return changed;
 }

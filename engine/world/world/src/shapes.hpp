@@ -27,7 +27,7 @@ struct MeshShape {
     bool is_usable = false;        // false: no triangle is valid or wanted
 
     // Builds the tree.
-    void build(const TriangleMesh& triangles, bool refittable);
+    void build(const TriangleMesh& triangles, bool refittable, Executor& executor);
     // Returns the mesh as a shape, under a map that stays alive as long as the shape; nullptr: no map.
     [[nodiscard]] convex::Shape shape(const glm::dmat3* map) const;
     // Returns a triangle, in the mesh's frame.
@@ -98,7 +98,7 @@ class Shapes {
         std::uint64_t revision = 0;
         bool is_usable = false;
     };
-    static void update_tree(const TriangleMesh& triangles, Mesh& mesh);
+    static void update_tree(const TriangleMesh& triangles, Mesh& mesh, Executor& executor);
     void build_own(const scene::Scene& scene, Own& own) const;
 
     Vector<Mesh> meshes_;

@@ -70,6 +70,13 @@ Result<ItemId> SpatialIndex::add(std::uint32_t layers) {
     return item;
 }
 
+Result<void> SpatialIndex::reserve(std::size_t items) {
+    if (auto reserved = tree_.reserve(items); !reserved) return reserved;
+    items_.reserve_pages(items);
+    reserved_ = std::max(reserved_, items);
+    return {};
+}
+
 void SpatialIndex::keep_no_box(ItemId item) {
     keep_box(item, refused(tree_.boxes()[item]));
 }
@@ -351,14 +358,16 @@ void SpatialIndex::build_tree(std::span<const ItemId> fresh, Executor& executor)
         if (!tree_.is_detached(item) && !tree_.contains(item)) removed.push_back(item);
         boxes[item] = items_[item].place == Place::moving ? box(item) : Obb();  // valid ones, as building needs them
     }
-    auto built = boxtree::BoxTree::build(boxes, tree_.layer_masks(),
-                                         {.detached = detached,
-                                          .orientation = tree_.structure().orientation(),
-                                          .room = boxes.size() / kRoomPart + kLeastRoom},
-                                         executor);
+    auto built = boxtree::BoxTree::build(
+        boxes, tree_.layer_masks(),
+        {.detached = detached,
+         .orientation = tree_.structure().orientation(),
+         .room = std::max(boxes.size() / kRoomPart + kLeastRoom, reserved_ - std::min(reserved_, boxes.size()))},
+        executor);
     detail::give_up_without_memory(built);
     CROFTON_ASSERT(built.has_value(), "boxes were checked before");
     if (!built) return;
+    require_ok(built->reserve(reserved_));
     // The lowest ids are given first.
     for (std::size_t i = removed.size(); i-- > 0;) require_ok(built->remove(removed[i]));
     for (const ItemId item : detached)

@@ -32,6 +32,8 @@ class SpatialIndex {
 
     // A new item, shown, without a box: it is nowhere until it gets one.
     [[nodiscard]] Result<ItemId> add(std::uint32_t layers);
+    // Takes memory for so many items in all, and again whenever the tree is built. Error: more than a tree holds.
+    [[nodiscard]] Result<void> reserve(std::size_t items);
     void remove(ItemId item);
     // Asks the memory for what removing or hiding the n-th and later of many items needs.
     template <class ItemOf>
@@ -192,6 +194,7 @@ class SpatialIndex {
     // In the tree, since the last rebuild began; of them those before the last update, and those when the one under way
     // began.
     Changed changed_in_tree_, changed_before_, changed_at_start_;
+    std::size_t reserved_ = 0;         // items
     std::size_t rebuild_work_ = 0;     // that the changes of the last updates make necessary
     std::uint32_t short_lived_ = 0;    // rises where items go that are young, falls where others do
     std::uint32_t quiet_updates_ = 0;  // since an item came into the tree or went, up to kUpdatesAtRest

@@ -15,6 +15,7 @@ Result<void> ContactFinder::update(const ObjectTable&, SpatialIndex&, const scen
                                    const PairChanges&, ShapeToucher, Executor&) {
     return fail(ErrorCode::unsupported, kNoItem, "World::update: this build of the library finds no pairs");
 }
+void ContactFinder::reserve(std::size_t) {}
 void ContactFinder::stay() {}
 void ContactFinder::release_scratch() {}
 

@@ -106,6 +106,8 @@ struct World::State {
     // Whether the occluders that a view drew are those of now.
     [[nodiscard]] Result<void> check_viewed(const ViewResult& visible) const;
     void note_removal() { revision.removal = world::next_revision(); }
+    [[nodiscard]] Result<void> reserve(std::size_t objects);
+    void make_room(std::size_t objects);  // for so many more that are added at once
     StagedChange& stage(std::uint32_t object);
     [[nodiscard]] Result<void> attach_mesh(world::Object& object, const ObjectDescription& description);
     [[nodiscard]] Result<scene::MeshId> mesh_of(const ObjectDescription& description);

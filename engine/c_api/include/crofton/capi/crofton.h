@@ -180,6 +180,13 @@ CROFTON_API crofton_status crofton_world_set_node_transforms(crofton_world* worl
 
 CROFTON_API crofton_status crofton_world_add(crofton_world* world, const crofton_object_description* description,
                                              crofton_object* object);
+/* Adds many; the descriptions lie as far from each other as their `size` says, which all share. Adds all valid ones.
+ * The handles of the others become 0, and crofton_last_error_item is the place of the first of them. */
+CROFTON_API crofton_status crofton_world_add_many(crofton_world* world, const crofton_object_description* descriptions,
+                                                  size_t count, crofton_object* objects);
+/* Takes memory for so many objects in all, so that no later call copies what the world knows of each to larger memory.
+ */
+CROFTON_API crofton_status crofton_world_reserve(crofton_world* world, size_t objects);
 CROFTON_API crofton_status crofton_world_remove(crofton_world* world, crofton_object object);
 /* Requires objects that were added with a transform, or by a shape under no node. */
 CROFTON_API crofton_status crofton_world_set_transforms(crofton_world* world, const crofton_object* objects,

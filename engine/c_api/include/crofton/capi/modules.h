@@ -402,6 +402,9 @@ CROFTON_API crofton_cast_options crofton_default_cast_options(void);
  * point, index or child.
  */
 CROFTON_API crofton_status crofton_shape_create(const crofton_shape_description* description, crofton_shape** shape);
+/* The same shape to the bit; `jobs`, or NULL, build the tree of a mesh together. */
+CROFTON_API crofton_status crofton_shape_create_with_jobs(const crofton_shape_description* description,
+                                                          const crofton_jobs* jobs, crofton_shape** shape);
 CROFTON_API crofton_status crofton_shape_destroy(crofton_shape* shape);
 
 /* Fill a struct whose `size` is set. CROFTON_UNSUPPORTED: surfaces have no mass. */

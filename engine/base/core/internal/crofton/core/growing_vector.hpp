@@ -53,6 +53,15 @@ class GrowingVector {
         stop_growing();
         values_.reserve(capacity);
     }
+    // Takes memory for so many, and for the room that is left when copying begins. Writes it once, so that no element
+    // that is appended later waits for a page of it.
+    void reserve_pages(std::size_t count) {
+        const std::size_t capacity = count + count / (kRoomPart - 1) + 1, size = values_.size();
+        if (capacity <= values_.capacity()) return;
+        reserve(capacity);
+        values_.resize(capacity);
+        values_.resize(size);
+    }
     void resize(std::size_t size, const T& value = T()) {
         stop_growing();
         values_.resize(size, value);

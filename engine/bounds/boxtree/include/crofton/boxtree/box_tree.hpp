@@ -70,6 +70,10 @@ class BoxTree {
     [[nodiscard]] Result<void> set_layer_mask(ItemId item, std::uint32_t layer_mask);
     void refit();
 
+    // Takes memory for so many items in all, so that no insertion copies their boxes to larger memory. Leaves and nodes
+    // grow in parts. Does nothing if there is as much. Error: more than 2^30 items.
+    [[nodiscard]] Result<void> reserve(std::size_t items);
+
     // For items that move every frame, which cull::MovingBoxes stores separately from the tree. A detached item is in
     // no leaf. It keeps its id and layers until attach() puts it back or remove() frees the id. Otherwise as remove and
     // insert.

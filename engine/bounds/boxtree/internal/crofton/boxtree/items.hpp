@@ -33,6 +33,12 @@ class Items {
     [[nodiscard]] Result<void> assign(std::span<const Obb> boxes, std::span<const std::uint32_t> layer_masks,
                                       Aabb& centers, std::size_t room = 0);
 
+    void reserve(std::size_t count) {
+        boxes_.reserve_pages(count);
+        layer_masks_.reserve_pages(count);
+    }
+    [[nodiscard]] std::size_t capacity() const { return boxes_.capacity(); }
+
     [[nodiscard]] std::span<const Obb> boxes() const { return boxes_.view(); }
     [[nodiscard]] std::span<const std::uint32_t> layer_masks() const { return layer_masks_.view(); }
     [[nodiscard]] std::span<const ItemId> free_ids() const { return free_ids_; }

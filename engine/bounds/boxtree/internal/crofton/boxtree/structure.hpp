@@ -65,6 +65,7 @@ class Structure {
 
     // To change items: their boxes and layers are written into items() first. These functions then bring them into the
     // leaves, and mark what the next refit must look at. A Placement puts items into leaves and takes them out.
+    void reserve_items(std::size_t count) { item_slots_.reserve_pages(count); }
     void reserve_item(ItemId item);  // room for it, so that add_items(item + 1) cannot fail
     void update_box(ItemId item);
     void update_layers(ItemId item);

@@ -89,6 +89,9 @@ class Broadphase {
     Result<void> update_moved(std::span<const Obb> boxes, std::span<const std::uint32_t> moved, PairTest test,
                               std::span<const CollisionFilter> filters = {}, Executor& executor = serial_executor());
 
+    // Takes memory for so many items, so that items that come later copy nothing to larger memory.
+    void reserve(std::size_t items);
+
     // Gives back the memory that updates of all items work with, and takes what updates of few need. All lists stay as
     // they are. Call it after loading many items, if the next updates move few.
     void release_scratch();

@@ -88,6 +88,13 @@ class World {
     World& operator=(World&&) noexcept;
 
     Result<ObjectHandle> add(const ObjectDescription& description);
+    // Adds many. objects[i] becomes the handle of descriptions[i], null where that is invalid. Error: sizes differ, and
+    // then it adds none.
+    Result<void> add(Strided<ObjectDescription> descriptions, std::span<ObjectHandle> objects);
+    // Takes memory for so many objects in all, so that no later add() or update() copies what the World knows of each
+    // to larger memory. Contacts, meshes, nodes and shapes are not counted. Errors: more than 2^30 objects
+    // (out_of_range); too little memory (out_of_memory).
+    Result<void> reserve(std::size_t objects);
     Result<void> remove(ObjectHandle object);
     // Requires an object that was added with a transform, or by its shape under no node.
     Result<void> set_transform(ObjectHandle object, const Transform& transform);
