@@ -227,7 +227,7 @@ enum class ContactPhase : std::uint8_t { began, stayed, ended };
 //
 // Two shapes also touch within WorldOptions::contact_margin. A point keeps its `memory`, which you may write, while its
 // id stays the same. A pair keeps the face and points of the last update while no others are deeper by 1e-4 of its size
-// (convex::contact_manifold); else a contact depends on the present objects alone. Resting pairs cost nothing.
+// (convex::contact_manifold), also where flush neighbours then decide. All else depends on the present objects alone.
 struct Contact {
     ObjectRef first, second;  // ordered as in ObjectPair; the first is shape a
     ContactPhase phase = ContactPhase::began;
