@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "handles.hpp"
+#include "world_fixture.hpp"
 
 using namespace crofton::capi_test;
 
@@ -75,6 +75,72 @@ TEST_SUITE("capi/misuse") {
         // All is as before.
         CHECK(cull_tree(tree, &view, nullptr, nullptr, visible.get()) == CROFTON_OK);
     }
+
+#if SIZE_MAX > UINT32_MAX
+    TEST_CASE("a number of vertices, indices, meshes or children that 32 bits do not tell apart is refused unread") {
+        const WorldHandle world = make_world();
+        const Tetrahedron tetrahedron;
+        const crofton_mesh solid = tetrahedron.mesh();
+        const crofton_mesh_data data = data_of(tetrahedron);
+        crofton_world_mesh mesh{};
+        REQUIRE(crofton_world_add_mesh(world.get(), &data, &mesh) == CROFTON_OK);
+        crofton_shape* shape = nullptr;
+        crofton_region* region = nullptr;
+        crofton_clustered_mesh* clustered = nullptr;
+        const crofton_transform pose = translation(0, 0, 0);
+        constexpr std::size_t kBeyond = std::size_t{UINT32_MAX} + 1;
+        for (const std::size_t count : {kBeyond, 3 * kBeyond, SIZE_MAX / 64, SIZE_MAX / 16, SIZE_MAX / 8, SIZE_MAX}) {
+            CAPTURE(count);
+            crofton_world_mesh other{};
+            for (const bool vertices : {true, false}) {
+                auto large = data;
+                (vertices ? large.position_count : large.index_count) = vertices ? count : std::max(count, 3 * kBeyond);
+                CHECK(crofton_world_add_mesh(world.get(), &large, &other) == CROFTON_OUT_OF_RANGE);
+                CHECK(crofton_world_replace_mesh(world.get(), mesh, &large) == CROFTON_OUT_OF_RANGE);
+                auto options = crofton_default_region_options();
+                options.meshes = &large;
+                options.mesh_count = 1;
+                CHECK(crofton_region_prepare(nullptr, 0, &options, nullptr, &region) == CROFTON_OUT_OF_RANGE);
+                crofton_mesh triangles = solid;
+                triangles.vertex_count = large.position_count;
+                triangles.index_count = large.index_count;
+                CHECK(crofton_clustered_mesh_create(&triangles, 0, &clustered) == CROFTON_OUT_OF_RANGE);
+                auto description = crofton_default_shape_description();
+                description.kind = CROFTON_SHAPE_MESH;
+                description.mesh = &triangles;
+                CHECK(crofton_shape_create(&description, &shape) == CROFTON_OUT_OF_RANGE);
+                auto occluder = sized<crofton_occluder>();
+                occluder.kind = CROFTON_OCCLUDER_PATCH;
+                occluder.positions = solid.positions;
+                occluder.indices = solid.indices;
+                occluder.position_count = triangles.vertex_count;
+                occluder.index_count = triangles.index_count;
+                CHECK(crofton_world_set_occluders(world.get(), mesh, &occluder, 1) == CROFTON_OUT_OF_RANGE);
+            }
+            auto vertices = data;
+            vertices.position_count = count;
+            CHECK(crofton_world_set_vertices(world.get(), mesh, &vertices) != CROFTON_OK);
+            auto options = crofton_default_region_options();
+            options.max_objects = UINT64_MAX;
+            const crofton_region_object object = crofton_default_region_object();
+            CHECK(crofton_region_prepare(&object, count, &options, nullptr, &region) == CROFTON_OUT_OF_RANGE);
+            options.meshes = &data;
+            options.mesh_count = count;
+            CHECK(crofton_region_prepare(nullptr, 0, &options, nullptr, &region) == CROFTON_OUT_OF_RANGE);
+            auto description = crofton_default_shape_description();
+            description.kind = CROFTON_SHAPE_COMPOUND;
+            const crofton_shape* child = nullptr;
+            description.children = &child;
+            description.poses = &pose;
+            description.child_count = count;
+            CHECK(crofton_shape_create(&description, &shape) == CROFTON_OUT_OF_RANGE);
+        }
+        CHECK(shape == nullptr);
+        CHECK(region == nullptr);
+        CHECK(clustered == nullptr);
+        CHECK(crofton_world_set_vertices(world.get(), mesh, &data) == CROFTON_OK);
+    }
+#endif
 
     TEST_CASE("a message says which number is at fault, and why") {
         const Tree tree = tree_of_one_box();

@@ -23,6 +23,23 @@ void set_threads(unsigned threads) {
     pool.swap(made);
 }
 
+// Objects of the library are not pickled, and what has no constructor is made by calls alone. Left to itself, pybind11
+// ends the interpreter for pickle's protocols 0 and 1, and __new__ gives an answer of uninitialised memory.
+void refuse_copies(const py::module_& module) {
+    for (const auto& [key, value] : module.attr("__dict__").cast<py::dict>()) {
+        if (!PyType_Check(value.ptr()) || PyExceptionClass_Check(value.ptr())) continue;
+        const std::string name = py::str(key);
+        value.attr("__reduce_ex__") = py::cpp_function(
+            [name](const py::object&, int) { raise_type("cannot pickle 'crofton." + name + "' object"); },
+            py::is_method(value));
+        // Where there is no py::init, __init__ is the slot of pybind11's base.
+        if (Py_TYPE(value.attr("__init__").ptr()) == &PyWrapperDescr_Type)
+            value.attr("__new__") = py::cpp_function([name](const py::args&, const py::kwargs&) {
+                raise_type("crofton." + name + " has no constructor: calls return it");
+            });
+    }
+}
+
 }  // namespace
 
 std::shared_ptr<Executor> executor() {
@@ -58,4 +75,5 @@ PYBIND11_MODULE(_crofton, module) {
     bind_view_requests(module);
     bind_world(module);
     bind_pvs(module);
+    refuse_copies(module);
 }

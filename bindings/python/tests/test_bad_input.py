@@ -3,6 +3,8 @@
 import signal
 import threading
 import time
+import copy
+import pickle
 
 import numpy as np
 import pytest
@@ -163,3 +165,64 @@ def test_ctrl_c_during_a_change_leaves_all_or_nothing(world, random):
         assert len(world) - before in (0, 1000)
     world.update()
     assert world.statistics["objects"] == len(world)
+class MadeOnDemand:
+    """A sequence whose items nobody else holds."""
+
+    def __init__(self, make):
+        self.make = make
+
+    def __len__(self):
+        return 3
+
+    def __getitem__(self, i):
+        if i >= 3:
+            raise IndexError(i)
+        return self.make()
+
+
+def test_a_compound_holds_the_children_that_a_sequence_makes():
+    pair = MadeOnDemand(lambda: (crofton.Shape.sphere(1.0), None))
+    for children in (MadeOnDemand(lambda: crofton.Shape.sphere(1.0)), pair):
+        assert crofton.Shape.compound(children).touches(crofton.Shape.sphere(1.0))
+    for text in ("\ud800\u4e2d", b"ab"):
+        with pytest.raises(TypeError, match="children"):
+            crofton.Shape.compound(text)
+
+
+def test_a_list_of_views_that_is_emptied_while_it_is_read(world):
+    requests = []
+
+    class Emptying:
+        def __array__(self, *_):
+            requests.clear()
+            return np.eye(4)
+
+    requests += [Emptying(), crofton.Camera()]
+    with pytest.raises((TypeError, crofton.Error)):
+        world.view(requests)
+
+
+@pytest.mark.parametrize("call", [
+    lambda: crofton.Shape.mesh(None), lambda: crofton.Shape.rounded(None, 0.5), lambda: crofton.Shape.compound([None]),
+    lambda: crofton.Shape.sphere(1.0).touches(None), lambda: crofton.distance(None, None),
+    lambda: crofton.DepthObject(None, np.eye(4)),
+])
+def test_none_in_place_of_an_object_is_a_type_error(call):
+    with pytest.raises(TypeError):
+        call()
+
+
+@pytest.mark.parametrize("protocol", range(pickle.HIGHEST_PROTOCOL + 1))
+def test_pickle_and_copy_refuse_by_name(protocol):
+    for thing in (crofton.Shape.sphere(1.0), crofton.World(), crofton.Camera(), crofton.Box((0, 0, 0), (1, 1, 1))):
+        with pytest.raises(TypeError, match="pickle"):
+            pickle.dumps(thing, protocol)
+        with pytest.raises(TypeError, match="pickle"):
+            copy.copy(thing)
+
+
+@pytest.mark.parametrize("answer", [crofton.ShapeHit, crofton.ObjectHit, crofton.Contact, crofton.ViewResult])
+def test_answers_are_made_by_calls_alone(answer):
+    for make in (answer, lambda: answer.__new__(answer)):
+        with pytest.raises(TypeError, match="constructor"):
+            make()

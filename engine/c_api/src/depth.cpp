@@ -13,6 +13,7 @@
 #include <crofton/capi/clustered_mesh.hpp>
 #include <crofton/capi/convert.hpp>
 #include <crofton/capi/growing.hpp>
+#include <crofton/capi/mesh.hpp>
 #include <crofton/capi/requests.hpp>
 #include "clusters.hpp"
 
@@ -87,9 +88,7 @@ void give(const Asked& asked, crofton_depth_culler& culler, const depth::Picture
 crofton_status crofton_clustered_mesh_create(const crofton_mesh* mesh, uint32_t max_triangles,
                                              crofton_clustered_mesh** clustered) {
     CROFTON_CHECK(check_pointer(clustered, __func__));
-    CROFTON_CHECK(check_struct(mesh, __func__));
-    CROFTON_CHECK(check_array(mesh->positions, mesh->vertex_count, __func__, 3));
-    CROFTON_CHECK(check_array(mesh->indices, mesh->index_count, __func__));
+    CROFTON_CHECK(check_mesh(mesh, __func__));
     return recover(__func__, [&, function = __func__] {
         auto cut = depth::ClusteredMesh::cut(
             std::span(reinterpret_cast<const glm::vec3*>(mesh->positions), mesh->vertex_count),

@@ -118,6 +118,8 @@ crofton_status create_height_field(const Description& given, crofton_shape** sha
 crofton_status create_compound(const Description& given, crofton_shape** shape, const char* function) {
     CROFTON_CHECK(check_array(given.children, given.child_count, function));
     CROFTON_CHECK(check_array(given.poses, given.child_count, function));
+    if (given.child_count > CROFTON_NONE)
+        return report(CROFTON_OUT_OF_RANGE, function, "32 bits number a compound's children");
     return recover(function, [&] {
         // Copied while they are held: another thread may destroy a child at any time.
         Vector<SharedShape> parts;

@@ -5,6 +5,7 @@
 
 #include <crofton/capi/convert.hpp>
 #include <crofton/capi/growing.hpp>
+#include <crofton/geometry/mesh_counts.hpp>
 #include "world.hpp"
 
 using namespace crofton;
@@ -30,7 +31,8 @@ crofton_status check_occluder(const crofton_occluder& given, const char* functio
     if (given.kind > CROFTON_OCCLUDER_PATCH)
         return report(CROFTON_INVALID_ARGUMENT, function, "unknown kind of occluder");
     CROFTON_CHECK(check_array(given.positions, given.position_count, function, 3));
-    return check_array(given.indices, given.index_count, function);
+    CROFTON_CHECK(check_array(given.indices, given.index_count, function));
+    return status_of(detail::check_mesh_counts(given.position_count, given.index_count), function);
 }
 
 FoundOccluder to_occluder(const crofton_occluder& given) {

@@ -92,12 +92,14 @@ crofton_status crofton_region_prepare(const crofton_region_object* objects, size
                                       const crofton_region_options* options, const crofton_jobs* jobs,
                                       crofton_region** region) {
     CROFTON_CHECK(check_pointer(region, __func__));
-    if (count > 0) CROFTON_CHECK(check_pointer(objects, __func__));
+    CROFTON_CHECK(check_array(objects, count, __func__));
     crofton_region_options given = crofton_default_region_options();
     if (options) CROFTON_CHECK(read_growing(options, __func__, given));
     CROFTON_CHECK(check_jobs(jobs, __func__));
-    if (given.mesh_count > 0) CROFTON_CHECK(check_pointer(given.meshes, __func__));
-    if (count > given.max_objects)
+    CROFTON_CHECK(check_array(given.meshes, given.mesh_count, __func__));
+    if (given.mesh_count > CROFTON_NONE)
+        return report(CROFTON_OUT_OF_RANGE, __func__, "32 bits number the meshes of a region");
+    if (count > std::min<std::uint64_t>(given.max_objects, kFirstRegionIndex))
         return report(CROFTON_OUT_OF_RANGE, __func__, "more objects than `max_objects`: prepare several regions");
     const char* const function = __func__;
     return recover(function, [&] {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // World's nodes and meshes.
 #include <algorithm>
+#include <crofton/geometry/mesh_counts.hpp>
 #include <cstring>
 #include <string>
 
@@ -11,12 +12,15 @@
 namespace crofton {
 namespace {
 
-TriangleMesh to_mesh(const MeshDescription& description) {
-    TriangleMesh mesh;
-    mesh.positions.resize(description.positions.size());
-    for (std::size_t i = 0; i < mesh.positions.size(); ++i) mesh.positions[i] = description.positions[i];
+Result<TriangleMesh> to_mesh(const MeshDescription& description) {
     const bool indexed = description.indices.size() > 0;
-    mesh.indices.resize(indexed ? description.indices.size() : mesh.positions.size());
+    const std::size_t vertices = description.positions.size(),
+                      indices = indexed ? description.indices.size() : vertices;
+    if (auto checked = detail::check_mesh_counts(vertices, indices); !checked) return checked.error();
+    TriangleMesh mesh;
+    mesh.positions.resize(vertices);
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) mesh.positions[i] = description.positions[i];
+    mesh.indices.resize(indices);
     for (std::size_t i = 0; i < mesh.indices.size(); ++i)
         mesh.indices[i] = indexed ? description.indices[i] : static_cast<std::uint32_t>(i);
     return mesh;
@@ -46,7 +50,9 @@ Result<void> World::State::check(MeshHandle mesh, std::uint64_t item) const {
 
 Result<MeshHandle> World::add_mesh(const MeshDescription& description) {
     State& s = *state_;
-    const auto mesh = s.scene.add_mesh(to_mesh(description), {}, description.box);
+    auto copy = to_mesh(description);
+    if (!copy) return copy.error();
+    const auto mesh = s.scene.add_mesh(std::move(*copy), {}, description.box);
     if (!mesh) return mesh.error();
     if (description.occluders)
         if (auto found = s.set_found_occluders(*mesh, {}); !found) {
@@ -67,7 +73,9 @@ Result<MeshHandle> World::add_mesh(const MeshDescription& description) {
 
 Result<void> World::replace_mesh(MeshHandle mesh, const MeshDescription& description) {
     if (auto known = state_->check(mesh, mesh.index); !known) return known;
-    TriangleMesh replacement = to_mesh(description);
+    auto copy = to_mesh(description);
+    if (!copy) return copy.error();
+    TriangleMesh& replacement = *copy;
     occlude::FoundOccluders found;
     if (description.occluders) {
         auto looked_for = occlude::find_occluders(replacement);
@@ -87,6 +95,11 @@ Result<void> World::replace_mesh(MeshHandle mesh, const MeshDescription& descrip
 Result<void> World::set_vertices(MeshHandle mesh, PointsView positions) {
     State& s = *state_;
     if (auto known = s.check(mesh, mesh.index); !known) return known;
+    // Before they are read: a wrong number leads beyond the caller's array.
+    if (const std::size_t has = s.scene.mesh(mesh.index).positions.size(); positions.size() != has)
+        return fail(ErrorCode::invalid_argument, positions.size(),
+                    {"mesh ", mesh.index, " has ", has, " vertices, not ", positions.size(),
+                     "; replace_mesh takes any number"});
     s.vertices.resize(positions.size());
     for (std::size_t i = 0; i < positions.size(); ++i) s.vertices[i] = positions[i];
     auto set = s.scene.set_vertices(mesh.index, s.vertices);

@@ -78,8 +78,9 @@ Result<boxtree::BoxTree> tree_over(std::span<const Obb> boxes, std::span<const s
 }  // namespace
 
 Result<Region> Region::prepare(Strided<RegionObject> objects, const RegionOptions& options, Executor& executor) {
-    if (objects.size() > options.max_objects)
-        return fail(ErrorCode::out_of_range, options.max_objects,
+    const std::uint64_t most = std::min<std::uint64_t>(options.max_objects, kFirstRegionIndex);
+    if (objects.size() > most)
+        return fail(ErrorCode::out_of_range, most,
                     {"region: ", objects.size(), " objects are more than max_objects: prepare several regions"});
     if (!(options.max_origin >= 0.0 && options.max_origin <= 0.5 * kMaxCoordinate))
         return fail(ErrorCode::out_of_range, kNoItem, "region: max_origin is not from 0 to 5e29");

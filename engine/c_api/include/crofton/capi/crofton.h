@@ -308,9 +308,9 @@ typedef enum crofton_contact_phase {
     CROFTON_CONTACT_ENDED = 2
 } crofton_contact_phase;
 
-/* Two objects that touch, or that have ended touching in this update. Ended contacts carry only the two object handles;
- * those of removed objects are stale. Two shapes also touch up to the contact margin. If neither object of a pair has
- * moved, the pair is not computed again. */
+/* Two objects that touch, or that have ended touching in this update; these have only the handles, which may be
+ * stale. Shapes also touch up to the contact margin, and keep the face and points of the last update while no others
+ * are deeper by 1e-4 of the pair's size. A pair that rests is not computed again. */
 typedef struct crofton_object_contact {
     crofton_object_ref first, second; /* ordered as in crofton_object_pair */
     uint8_t phase;                    /* a crofton_contact_phase */

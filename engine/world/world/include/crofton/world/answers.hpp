@@ -222,12 +222,12 @@ struct ObjectPair {
 
 enum class ContactPhase : std::uint8_t { began, stayed, ended };
 
-// Two objects that touch, or that touched in the update before. Ended contacts have only the two objects, whose handles
-// are stale if the objects were removed. A contact goes on if its objects gain or lose shapes.
+// Two objects that touch, or that touched in the update before; these have only the two objects, whose handles may be
+// stale. A contact goes on if its objects gain or lose shapes. All points are valid until the next update.
 //
-// Two objects with shapes also touch if they come within WorldOptions::contact_margin. Their points persist from update
-// to update: a point keeps its `memory`, which you may write, while its id stays the same (crofton/convex/query.hpp).
-// If neither object has moved, the pair is not computed again. All points are valid until the next update.
+// Two shapes also touch within WorldOptions::contact_margin. A point keeps its `memory`, which you may write, while its
+// id stays the same. A pair keeps the face and points of the last update while no others are deeper by 1e-4 of its size
+// (convex::contact_manifold), also where flush neighbours then decide. All else depends on the present objects alone.
 struct Contact {
     ObjectRef first, second;  // ordered as in ObjectPair; the first is shape a
     ContactPhase phase = ContactPhase::began;
