@@ -79,7 +79,7 @@ SharedShape rounded_shape(const SharedShape& core, double radius) {
 SharedShape compound_shape(const py::sequence& children) {
     auto result = std::make_shared<PyShape>();
     std::vector<convex::CompoundChild> parts;
-    for (const py::handle one : children) {
+    for (const py::object one : children) {
         const bool is_pair = py::isinstance<py::tuple>(one) && py::len(one) == 2;
         const py::object shape =
             is_pair ? py::object(one.cast<py::tuple>()[0]) : py::reinterpret_borrow<py::object>(one);
@@ -231,11 +231,11 @@ void bind_shape(py::module_& module) {
             },
             py::arg("normal"), py::arg("offset") = 0.0,
             "All points x with dot(normal, x) + offset >= 0; the normal points into the solid.")
-        .def_static("mesh", &mesh_shape, py::arg("mesh"), py::arg("front_only") = false,
+        .def_static("mesh", &mesh_shape, py::arg("mesh").none(false), py::arg("front_only") = false,
                     "The triangles of a Mesh, as a surface.")
         .def_static("height_field", &field_shape, py::arg("heights"), py::arg("spacing") = py::make_tuple(1.0, 1.0),
                     "Ground given by heights: heights[j, i] is y at x = i · spacing[0] and z = j · spacing[1].")
-        .def_static("rounded", &rounded_shape, py::arg("core"), py::arg("radius"),
+        .def_static("rounded", &rounded_shape, py::arg("core").none(false), py::arg("radius"),
                     "All points within `radius` of a convex shape.")
         .def_static("compound", &compound_shape, py::arg("children"), "The union of shapes, or of pairs (shape, pose).")
         .def_property_readonly("kind", [](const PyShape& b) { return kind_name(b.shape->kind()); })

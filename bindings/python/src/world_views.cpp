@@ -85,7 +85,7 @@ SeenByOne view_one(const PyWorld& python_world, const ViewRequest& request) {
 SeenByMany view_many(const PyWorld& python_world, const py::sequence& given) {
     std::vector<std::shared_ptr<HeldRequest>> held;
     std::vector<ViewRequest> requests;
-    for (const py::handle one : given) {
+    for (const py::object one : given) {
         if (py::isinstance<HeldRequest>(one)) {
             held.push_back(one.cast<std::shared_ptr<HeldRequest>>());
         } else {

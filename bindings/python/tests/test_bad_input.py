@@ -163,3 +163,55 @@ def test_ctrl_c_during_a_change_leaves_all_or_nothing(world, random):
         assert len(world) - before in (0, 1000)
     world.update()
     assert world.statistics["objects"] == len(world)
+
+
+class Fresh:
+    """A sequence whose items live only as long as someone holds them, like those of an array."""
+
+    def __init__(self, make, count):
+        self.make, self.count = make, count
+
+    def __len__(self):
+        return self.count
+
+    def __getitem__(self, i):
+        if i >= self.count:
+            raise IndexError(i)
+        return self.make(i)
+
+
+def at(x):
+    matrix = np.eye(4)
+    matrix[0, 3] = x
+    return matrix
+
+
+def test_items_that_a_sequence_makes_anew_are_held(world):
+    ball = crofton.Shape.sphere(1)
+    row = crofton.Shape.compound(Fresh(lambda i: (crofton.Shape.box((1, 1, 1)), at(3.0 * i)), 100))
+    assert abs(row.bounds - [[-1, -1, -1], [298, 1, 1]]).max() < 1e-9
+    assert row.touches(ball, at(299)) and not row.touches(ball, at(1.5 + 300))
+    for wrong in (np.zeros(3), np.zeros(3, complex), Fresh(lambda i: [0.0] * 1000, 20)):
+        with pytest.raises(TypeError):
+            crofton.Shape.compound(wrong)
+    world.add(sphere=((0, 0, -5), 1.0))
+    world.update()
+    requests = Fresh(lambda i: crofton.ViewRequest(crofton.Camera((0, 0, 0), (0, 0, -1 if i % 2 else 1))), 30)
+    try:
+        seen = world.view(requests)
+    except TypeError:
+        seen = world.view(list(requests))
+    assert seen.view_count == 30 and seen.view_masks.tolist() == [0xAAAAAAAA & (1 << 30) - 1]
+
+
+@pytest.mark.parametrize("call", [
+    lambda w, m: crofton.Shape.mesh(None), lambda w, m: crofton.Shape.rounded(None, 1), lambda w, m: crofton.Shape.compound([None]),
+    lambda w, m: crofton.Shape.sphere(1).touches(None), lambda w, m: w.set_occluders(m, [None]), lambda w, m: w.attach(None, (0, 0, 0)),
+    lambda w, m: crofton.DepthObject(None, np.eye(4)), lambda w, m: crofton.DepthCuller().find_visible([None], 9, 9),
+    lambda w, m: w.view([None]), lambda w, m: w.cast(None, (0, 0, 1)), lambda w, m: crofton.ShadowReceivers(None), lambda w, m: w.hidden_by(None),
+    lambda w, m: crofton.merge([None]), lambda w, m: crofton.Region.prepare(instances=[(None, np.eye(4))]), lambda w, m: w.set_mesh(None, m),
+], ids=range(15))
+def test_none_in_place_of_a_thing_is_refused(world, cube, call):
+    mesh = world.add_mesh(*cube)
+    with pytest.raises((TypeError, crofton.Error)):
+        call(world, mesh)
