@@ -40,6 +40,9 @@ def load(source):
 
 def merge(meshes):
     """Several meshes as one, with colours where all have them."""
+    meshes = list(meshes)
+    if not all(isinstance(mesh, Mesh) for mesh in meshes):
+        raise TypeError("meshes: a sequence of Mesh is expected")
     first, indices = 0, []
     for mesh in meshes:
         indices.append(mesh.indices + np.uint32(first))

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """What a World says of rays, shapes, numbers and indices that are none."""
+import copy
+import pickle
 import signal
 import threading
 import time
-import copy
-import pickle
 
 import numpy as np
 import pytest
@@ -108,63 +108,6 @@ def test_errors_name_what_python_has(world, cube):
     assert str(error.value).startswith("hull: point 0")
 
 
-def interrupted(call):
-    """Presses Ctrl-C 0.2 s after the start of a call, and returns how long it took to stop."""
-    press = threading.Timer(0.2, signal.pthread_kill, [threading.main_thread().ident, signal.SIGINT])
-    start = time.monotonic()
-    press.start()
-    try:
-        with pytest.raises(KeyboardInterrupt):
-            call()
-        return time.monotonic() - start
-    finally:
-        press.join()
-
-
-def many_rays(random, count):
-    return random.uniform(-1, 1, (count, 3)), random.uniform(-1, 1, (count, 3)) + (0, 0, 2)
-
-
-def test_ctrl_c_ends_many_rays_and_loses_nothing(world, cube, random):
-    world.add_boxes(crofton.boxes(random.uniform(-50, 50, (20_000, 3)), 0.5))
-    world.update()
-    origins, directions = many_rays(random, 4_000_000)
-    whole = world.raycast_many(origins[:1000], directions[:1000])
-    assert interrupted(lambda: world.raycast_many(origins, directions)) < 2
-    assert (world.raycast_many(origins[:1000], directions[:1000]) == whole).all()
-    mesh = crofton.Mesh(*cube)
-    assert interrupted(lambda: [mesh.raycast_many(origins, directions) for _ in range(100)]) < 10
-    assert mesh.raycast_many(origins[:9], directions[:9])["hit"].all()
-
-
-def test_a_handler_of_ctrl_c_may_use_the_world_that_is_asked(world, random):
-    world.add_boxes(crofton.boxes(random.uniform(-50, 50, (20_000, 3)), 0.5))
-    world.update()
-    origins, directions = many_rays(random, 1_000_000)
-    called = []
-    signal.signal(signal.SIGINT, lambda *_: called.append(world.update()))
-    try:
-        threading.Timer(0.1, signal.pthread_kill, [threading.main_thread().ident, signal.SIGINT]).start()
-        found = world.raycast_many(origins, directions)
-    finally:
-        signal.signal(signal.SIGINT, signal.default_int_handler)
-    assert called == [None]
-    assert (found[-1000:] == world.raycast_many(origins[-1000:], directions[-1000:])).all()
-
-
-def test_ctrl_c_during_a_change_leaves_all_or_nothing(world, random):
-    boxes = crofton.boxes(random.uniform(-50, 50, (1000, 3)), 0.5)
-
-    def change_for_ever():
-        while True:
-            world.remove(world.add_boxes(boxes))
-
-    for _ in range(3):
-        before = len(world)
-        assert interrupted(change_for_ever) < 2
-        assert len(world) - before in (0, 1000)
-    world.update()
-    assert world.statistics["objects"] == len(world)
 class MadeOnDemand:
     """A sequence whose items nobody else holds."""
 
@@ -226,3 +169,112 @@ def test_answers_are_made_by_calls_alone(answer):
     for make in (answer, lambda: answer.__new__(answer)):
         with pytest.raises(TypeError, match="constructor"):
             make()
+def interrupted(call):
+    """Presses Ctrl-C 0.2 s after the start of a call, and returns how long it took to stop."""
+    press = threading.Timer(0.2, signal.pthread_kill, [threading.main_thread().ident, signal.SIGINT])
+    start = time.monotonic()
+    press.start()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            call()
+        return time.monotonic() - start
+    finally:
+        press.join()
+
+
+def many_rays(random, count):
+    return random.uniform(-1, 1, (count, 3)), random.uniform(-1, 1, (count, 3)) + (0, 0, 2)
+
+
+def test_ctrl_c_ends_many_rays_and_loses_nothing(world, cube, random):
+    world.add_boxes(crofton.boxes(random.uniform(-50, 50, (20_000, 3)), 0.5))
+    world.update()
+    origins, directions = many_rays(random, 4_000_000)
+    whole = world.raycast_many(origins[:1000], directions[:1000])
+    assert interrupted(lambda: world.raycast_many(origins, directions)) < 2
+    assert (world.raycast_many(origins[:1000], directions[:1000]) == whole).all()
+    mesh = crofton.Mesh(*cube)
+    assert interrupted(lambda: [mesh.raycast_many(origins, directions) for _ in range(100)]) < 10
+    assert mesh.raycast_many(origins[:9], directions[:9])["hit"].all()
+
+
+def test_a_handler_of_ctrl_c_may_use_the_world_that_is_asked(world, random):
+    world.add_boxes(crofton.boxes(random.uniform(-50, 50, (20_000, 3)), 0.5))
+    world.update()
+    origins, directions = many_rays(random, 1_000_000)
+    called = []
+    signal.signal(signal.SIGINT, lambda *_: called.append(world.update()))
+    try:
+        threading.Timer(0.1, signal.pthread_kill, [threading.main_thread().ident, signal.SIGINT]).start()
+        found = world.raycast_many(origins, directions)
+    finally:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+    assert called == [None]
+    assert (found[-1000:] == world.raycast_many(origins[-1000:], directions[-1000:])).all()
+
+
+def test_ctrl_c_during_a_change_leaves_all_or_nothing(world, random):
+    boxes = crofton.boxes(random.uniform(-50, 50, (1000, 3)), 0.5)
+
+    def change_for_ever():
+        while True:
+            world.remove(world.add_boxes(boxes))
+
+    for _ in range(3):
+        before = len(world)
+        assert interrupted(change_for_ever) < 2
+        assert len(world) - before in (0, 1000)
+    world.update()
+    assert world.statistics["objects"] == len(world)
+
+
+class Fresh:
+    """A sequence whose items live only as long as someone holds them, like those of an array."""
+
+    def __init__(self, make, count):
+        self.make, self.count = make, count
+
+    def __len__(self):
+        return self.count
+
+    def __getitem__(self, i):
+        if i >= self.count:
+            raise IndexError(i)
+        return self.make(i)
+
+
+def at(x):
+    matrix = np.eye(4)
+    matrix[0, 3] = x
+    return matrix
+
+
+def test_items_that_a_sequence_makes_anew_are_held(world):
+    ball = crofton.Shape.sphere(1)
+    row = crofton.Shape.compound(Fresh(lambda i: (crofton.Shape.box((1, 1, 1)), at(3.0 * i)), 100))
+    assert abs(row.bounds - [[-1, -1, -1], [298, 1, 1]]).max() < 1e-9
+    assert row.touches(ball, at(299)) and not row.touches(ball, at(1.5 + 300))
+    for wrong in (np.zeros(3), np.zeros(3, complex), Fresh(lambda i: [0.0] * 1000, 20)):
+        with pytest.raises(TypeError):
+            crofton.Shape.compound(wrong)
+    world.add(sphere=((0, 0, -5), 1.0))
+    world.update()
+    requests = Fresh(lambda i: crofton.ViewRequest(crofton.Camera((0, 0, 0), (0, 0, -1 if i % 2 else 1))), 30)
+    try:
+        seen = world.view(requests)
+    except TypeError:
+        seen = world.view(list(requests))
+    assert seen.view_count == 30 and seen.view_masks.tolist() == [0xAAAAAAAA & (1 << 30) - 1]
+
+
+@pytest.mark.parametrize("call", [
+    lambda w, m: crofton.Shape.mesh(None), lambda w, m: crofton.Shape.rounded(None, 1), lambda w, m: crofton.Shape.compound([None]),
+    lambda w, m: crofton.Shape.sphere(1).touches(None), lambda w, m: w.set_occluders(m, [None]), lambda w, m: w.attach(None, (0, 0, 0)),
+    lambda w, m: crofton.DepthObject(None, np.eye(4)), lambda w, m: crofton.DepthCuller().find_visible([None], 9, 9),
+    lambda w, m: w.view([None]), lambda w, m: w.cast(None, (0, 0, 1)), lambda w, m: crofton.ShadowReceivers(None), lambda w, m: w.hidden_by(None),
+    lambda w, m: crofton.merge([None]), lambda w, m: crofton.Region.prepare(instances=[(None, np.eye(4))]), lambda w, m: w.set_mesh(None, m),
+], ids=range(15))
+def test_none_in_place_of_a_thing_is_refused(world, cube, call):
+    mesh = world.add_mesh(*cube)
+    with pytest.raises((TypeError, crofton.Error)):
+        call(world, mesh)
