@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Fills the descriptions and options of the C API with their defaults.
 #include <crofton/capi/crofton.h>
 
 #include <algorithm>

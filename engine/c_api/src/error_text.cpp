@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Keeps each thread's last error message.
 #include <crofton/capi/crofton.h>
 
 #include <crofton/core/version.hpp>

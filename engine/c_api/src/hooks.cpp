@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Forwards messages, jobs and memory to the host's functions.
 #include <crofton/capi/base.h>
 
 #include <crofton/core/error.hpp>

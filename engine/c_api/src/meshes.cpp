@@ -19,10 +19,6 @@ namespace {
 
 constexpr std::uint32_t kAllRelations = 2 * CROFTON_MESHES_DEPTH - 1;
 
-void copy_out(const glm::dvec3& v, double* result) {
-    std::copy_n(&v.x, 3, result);
-}
-
 // Two meshes and how they lie, checked, for the length of a call.
 class PosedMeshes {
   public:

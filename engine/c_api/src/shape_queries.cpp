@@ -25,10 +25,6 @@ static_assert(CROFTON_CAST_UNRESOLVED == static_cast<int>(convex::CastResult::un
 
 namespace {
 
-void copy_out(const glm::dvec3& v, double* result) {
-    std::memcpy(result, &v.x, 3 * sizeof(double));
-}
-
 crofton_part to_c_part(const convex::PartId& part) {
     return {part.child, part.triangle};
 }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Sets, reads and finds a World's occluders, for the C API.
 #include <crofton/capi/crofton.h>
 
 #include <crofton/occlude/occluder.hpp>

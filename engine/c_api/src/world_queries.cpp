@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Reads a World's objects and meshes, and asks its queries, for the C API.
 #include <crofton/capi/crofton.h>
 #include <crofton/mesh/mesh_query.hpp>
 #include <crofton/world/world.hpp>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Chooses the Vulkan device.
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>

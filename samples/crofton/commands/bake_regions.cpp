@@ -58,7 +58,7 @@ Result<RegionGrid> region_grid_from(const std::string& text) {
 
 namespace {
 
-constexpr double kSaveEvery = 1000.0;                    // milliseconds
+constexpr double kSaveMilliseconds = 1000.0;
 constexpr const char* kUnfinished = "unfinished.state";  // in the folder, until its index is written
 
 // Files of regions, and the state that says which are written.
@@ -119,7 +119,7 @@ class RegionWriter {
         const std::lock_guard lock(mutex_);
         written_.push_back(std::move(path));
         state_.done.emplace(place, std::move(done));
-        return saved_.milliseconds() < kSaveEvery ? Result<void>{} : save();
+        return saved_.milliseconds() < kSaveMilliseconds ? Result<void>{} : save();
     }
 
     // Waits until what write() has written is on the disk.

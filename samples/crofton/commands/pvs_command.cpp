@@ -29,7 +29,7 @@ namespace crofton::cli {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr double kSaveEvery = 20.0;  // seconds
+constexpr double kSaveSeconds = 20.0;
 // Relative to the near radius: keeps the walls of a room far enough from its cell for proofs.
 constexpr double kInset = 1.01;
 constexpr std::uint32_t kByScene = ~std::uint32_t{0}, kStepsInLevels = 10000;
@@ -133,7 +133,7 @@ Result<void> trace(Job& job, pvs::Bake& bake, Executor& executor) {
     const auto start = Clock::now();
     for (bool done = false; !done;) {
         const std::uint64_t before = bake.lines_done();
-        double seconds = kSaveEvery;
+        double seconds = kSaveSeconds;
         if (job.options.seconds > 0.0) seconds = std::min(seconds, job.options.seconds - seconds_since(start));
         const auto ran = bake.run(
             {.seconds = seconds, .shard = job.shard, .should_stop = PartProgress::should_stop, .user = &progress},

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Collects a scene's meshes, instances and tree, and writes them as a baked file.
 #include <crofton/bake/baked_scene.hpp>
 #include <crofton/core/recovery.hpp>
 #include <crofton/world/region_box.hpp>

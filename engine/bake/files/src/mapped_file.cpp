@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Maps a file into memory, or reads it where it cannot be mapped.
 #include <crofton/bake/baked_scene.hpp>
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Writes a file so that readers see the old content or the new, whenever the writer is ended.
 #include <crofton/bake/baked_scene.hpp>
 #include <crofton/core/recovery.hpp>
 

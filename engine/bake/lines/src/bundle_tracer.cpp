@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Traces bundles of parallel lines: triangles are drawn into a grid of lines.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -3,8 +3,6 @@
 
 #include "trace_kernels.hpp"
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "draw_kernels.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 #include <crofton/simd/compress-inl.hpp>

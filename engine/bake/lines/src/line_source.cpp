@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Draws random lines through a scene's bounds.
 #include <algorithm>
 #include <cmath>
 #include <crofton/core/error.hpp>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Lists the triangles that a line crosses.
 #include <algorithm>
 #include <array>
 #include <cmath>

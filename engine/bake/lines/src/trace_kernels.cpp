@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "trace_kernels.hpp"
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "trace_kernels.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 #include <bit>

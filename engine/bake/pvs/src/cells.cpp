@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Divides the space of cameras into the cells of a visible set.
 #include <algorithm>
 #include <cmath>
 #include <crofton/core/recovery.hpp>

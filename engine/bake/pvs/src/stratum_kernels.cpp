@@ -4,8 +4,6 @@
 #include <crofton/geometry/trigonometry.hpp>
 #include <numbers>
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "stratum_kernels.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 

@@ -2,8 +2,6 @@
 // Amanatides and Woo, "A fast voxel traversal algorithm for ray tracing" (1987), without branches on a line's way.
 #include "walk_kernels.hpp"
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "walk_kernels.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 

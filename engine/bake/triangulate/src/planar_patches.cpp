@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Triangulates the flat patches of a mesh anew, at minimum weight.
 #include <algorithm>
 #include <chrono>
 #include <cmath>

@@ -3,8 +3,6 @@
 
 #include <crofton/sampling/sampling.hpp>
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "random_kernels.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 

@@ -3,8 +3,6 @@
 
 #include <hwy/cache_control.h>
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "leaf_extents.cpp"
 // clang-format off
 #include <hwy/foreach_target.h>
 // clang-format on

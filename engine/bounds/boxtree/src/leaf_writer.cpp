@@ -7,8 +7,6 @@
 #include <cstddef>
 #include <cstring>
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "leaf_writer.cpp"
 // clang-format off
 #include <hwy/foreach_target.h>
 // clang-format on

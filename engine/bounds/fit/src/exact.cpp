@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Runs exact fits with a temporary Fitter.
 #include <crofton/core/recovery.hpp>
 #include <crofton/fit/fit.hpp>
 

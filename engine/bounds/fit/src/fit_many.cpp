@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Fits a box to each of many sets of points, on several threads.
 #include <algorithm>
 #include <crofton/core/error.hpp>
 #include <crofton/core/memory.hpp>

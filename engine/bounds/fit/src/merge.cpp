@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Fits a box around boxes.
 #include <algorithm>
 #include <cmath>
 #include <crofton/core/memory.hpp>

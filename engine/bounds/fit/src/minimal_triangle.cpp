@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Finds the least triangle around points of the plane.
 #include <algorithm>
 #include <cmath>
 #include <crofton/core/memory.hpp>

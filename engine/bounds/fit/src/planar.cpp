@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Finds the best rectangle and the least disc around points of the plane.
 #include <algorithm>
 #include <cmath>
 #include <crofton/core/recovery.hpp>

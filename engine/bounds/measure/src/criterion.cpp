@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Defines the criteria that fits and trees minimise.
 #include <cmath>
 #include <crofton/measure/measure.hpp>
 #include <numbers>

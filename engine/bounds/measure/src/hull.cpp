@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Measures the convex hull of points.
 #include <crofton/core/recovery.hpp>
 #include <crofton/geometry/mesh.hpp>
 #include <crofton/measure/measure.hpp>

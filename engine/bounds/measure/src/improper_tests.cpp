@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Measures the queries that a bound answers wrongly for its object.
 #include <algorithm>
 #include <cmath>
 #include <crofton/geometry/trigonometry.hpp>

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
 // The fifteen axes of one pair of boxes in double, compiled for each instruction set and chosen at run time.
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "axes_in_double.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h:
 #include <hwy/highway.h>

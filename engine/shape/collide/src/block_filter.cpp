@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
 // The separating-axis test on sixteen pairs of boxes at once, compiled for each instruction set and chosen at run time.
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "block_filter.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h:
 #include <hwy/highway.h>

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
 // The broadphase's kernels, compiled for each instruction set and chosen at run time.
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "bound_blocks.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h:
 #include <hwy/cache_control.h>
@@ -349,7 +347,7 @@ void FindPartners(const BoundTree& tree, const std::uint32_t* items, const LaneB
 }
 
 // The lanes' bounds are widened by more than all roundings: of the ray's origin, of differences, of products with t.
-HWY_INLINE std::uint32_t lanes_that_meet(const BoundBlock& block, const LaneRay& ray) {
+HWY_INLINE std::uint32_t lanes_that_meet(const BoundBlock& block, const BlockRay& ray) {
     const hn::CappedTag<double, kBoxBlock> d;
     const hn::Rebind<float, decltype(d)> df;
     std::uint32_t bits = 0;
@@ -404,7 +402,7 @@ std::size_t find_all(const BoundTree& tree, const Query& query, std::uint32_t* i
     return count;
 }
 
-std::size_t FindAlong(const BoundTree& tree, const LaneRay& ray, std::uint32_t* items, std::size_t room) {
+std::size_t FindAlong(const BoundTree& tree, const BlockRay& ray, std::uint32_t* items, std::size_t room) {
     return find_all(tree, ray, items, room);
 }
 std::size_t FindNear(const BoundTree& tree, const LaneBounds& bounds, std::uint32_t* items, std::size_t room) {
@@ -438,7 +436,7 @@ void find_partners(const BoundTree& tree, const std::uint32_t* items, const Lane
                    SlotPairs& pairs, GrowPairs grow) {
     HWY_DYNAMIC_DISPATCH(FindPartners)(tree, items, bounds, count, pairs, grow);
 }
-std::size_t find_along(const BoundTree& tree, const LaneRay& ray, std::uint32_t* items, std::size_t room) {
+std::size_t find_along(const BoundTree& tree, const BlockRay& ray, std::uint32_t* items, std::size_t room) {
     return HWY_DYNAMIC_DISPATCH(FindAlong)(tree, ray, items, room);
 }
 std::size_t find_near(const BoundTree& tree, const LaneBounds& bounds, std::uint32_t* items, std::size_t room) {

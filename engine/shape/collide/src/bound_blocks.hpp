@@ -54,14 +54,14 @@ inline constexpr std::size_t kPairRoom = (kCandidates + 1) * kBoxBlock;
 void find_pairs(const BoundTree& tree, std::size_t begin, std::size_t end, SlotPairs& pairs, GrowPairs grow);
 
 // A ray in the bounds' frame. Along flat axes it does not move, or too slowly for its inverse direction.
-struct LaneRay {
+struct BlockRay {
     double origin[3], inverse[3], max_t;
     bool is_flat[3];
 };
 
 // Writes the items whose bounds the ray, or other bounds, meet, and returns how many; more than `room` where there are
 // too many. A ray meets bounds that it misses by less than 1e-11 of the coordinates.
-std::size_t find_along(const BoundTree& tree, const LaneRay& ray, std::uint32_t* items, std::size_t room);
+std::size_t find_along(const BoundTree& tree, const BlockRay& ray, std::uint32_t* items, std::size_t room);
 std::size_t find_near(const BoundTree& tree, const LaneBounds& bounds, std::uint32_t* items, std::size_t room);
 
 // For each of the items, whose bounds are given: all other items whose bounds meet them, as {i, other item}. In no

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Finds all pairs of boxes that overlap, and follows them from update to update.
 #include <algorithm>
 #include <atomic>
 #include <bit>

@@ -62,7 +62,7 @@ void MovingTree::update(std::span<const Obb> boxes) {
 // What is not finite is left to who asks: all boxes may be met.
 std::size_t MovingTree::along(const Ray& ray, std::span<std::uint32_t> indices) const {
     const glm::dvec3 origin = ray.origin - state_->origin;
-    LaneRay lanes;
+    BlockRay lanes;
     for (int i = 0; i < 3; ++i) {
         lanes.origin[i] = origin[i];
         lanes.inverse[i] = 1.0 / ray.direction[i];

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "tree_lanes.hpp"
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "tree_lanes.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h:
 #include <hwy/highway.h>

@@ -4,20 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "parts.hpp"
+
 namespace crofton::convex {
 namespace {
 
 bool is_solid_of_revolution(const Shape& shape) {
     const Kind kind = shape.kind();
     return kind == Kind::sphere || kind == Kind::capsule || kind == Kind::cylinder || kind == Kind::cone;
-}
-
-// A bound of how far the axes are from orthonormal ones: of |(Rᵀ R − 1) v| for unit vectors v, and some more.
-double skew(const glm::dmat3& r) {
-    double most = 0.0;
-    for (int i = 0; i < 3; ++i)
-        for (int j = 0; j <= i; ++j) most = std::max(most, std::abs(glm::dot(r[i], r[j]) - (i == j ? 1.0 : 0.0)));
-    return 4.0 * most;
 }
 
 // Where the quadratic rate · s + bend · s² reaches `gap` > 0; infinite where it does not.
@@ -62,7 +56,7 @@ bool Advance::turn_as_solid_of_revolution(const ShapeAtPose& now, const Motion& 
     const double bend = 0.5 * (spin + tilt) * tilt * arm * 1.00001;
     if (!(bend < 0.5 * glm::length(glm::cross(d, motion.spin)) * spin * arm)) return false;
     turned_ = Pair::local(now.pose.rotation, glm::cross(d, glm::cross(axis, moves)));
-    drift_ += spin * arm * skew(now.pose.rotation) - glm::dot(turned_, motion.pivot);
+    drift_ += spin * arm * 4.0 * skew(now.pose.rotation) - glm::dot(turned_, motion.pivot);
     bend_ = bend;
     set_support(Pair::local(now.pose.rotation, d));
     return true;

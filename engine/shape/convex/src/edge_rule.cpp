@@ -118,12 +118,10 @@ std::size_t EdgeRule::slot_of(const glm::dvec3& vertex) const {
 }
 
 bool EdgeRule::is_within_search(const glm::dvec3& point) const {
-    const glm::dvec3 p = Pair::local(shape_->pose.rotation, point - shape_->pose.translation);
-    const Aabb& box = shape_->shape.bounds();
-    const double radius = shape_->shape.radius();
-    const glm::dvec3 core = (glm::max)(box.half_extents() - radius, glm::dvec3(0.0)), offset = p - box.center();
-    const glm::dvec3 way = offset - (glm::clamp)(offset, -core, core);
-    return glm::dot(way, way) <= radius * radius;
+    const QueryBox core = core_box(shape_->shape);
+    const glm::dvec3 offset = Pair::local(shape_->pose.rotation, point - shape_->pose.translation) - core.center;
+    const glm::dvec3 way = offset - (glm::clamp)(offset, -core.half, core.half);
+    return glm::dot(way, way) <= core.radius * core.radius;
 }
 
 bool EdgeRule::points_into_neighbor(std::uint32_t index, const NearSurface& surface, const glm::dvec3& normal,

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
 // The farthest of many points along a direction, compiled for each instruction set and chosen at run time.
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "farthest.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h:
 #include <hwy/highway.h>

@@ -8,7 +8,7 @@
 namespace crofton::convex {
 namespace {
 
-constexpr double kSameNormal = 0.99619469809174555;  // the cosine of 5 degrees
+constexpr double kSameNormalCosine = 0.99619469809174555;  // the cosine of 5 degrees
 constexpr std::uint32_t kUnnumbered = ~std::uint32_t{0};
 
 }  // namespace
@@ -41,7 +41,7 @@ void ManifoldList::assign_manifolds() {
     });
     for (const std::uint32_t i : by_depth_) {
         Touching& part = parts_[i];
-        double most = kSameNormal;
+        double most = kSameNormalCosine;
         part.manifold = kUnnumbered;
         for (std::size_t k = 0; k < normals_.size(); ++k) {
             const double agreement = glm::dot(normals_[k], part.normal);

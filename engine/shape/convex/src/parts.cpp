@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "parts.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <crofton/convex/shape_maker.hpp>
 #include <crofton/mesh/mesh_parts.hpp>
@@ -53,21 +54,34 @@ double rounding_of(const glm::dvec3& a, const glm::dvec3& b) {
 
 }  // namespace
 
-QueryBox box_around(const ShapeAtPose& placed, const RigidTransform& pose) {
-    const Aabb& bounds = placed.shape.bounds();
-    const glm::dmat3 back = glm::inverse(pose.rotation);
+double skew(const glm::dmat3& m) {
+    double most = 0.0;
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j <= i; ++j) most = std::max(most, std::abs(glm::dot(m[i], m[j]) - (i == j ? 1.0 : 0.0)));
+    return most;
+}
+
+QueryBox core_box(const Shape& shape) {
+    const Aabb& bounds = shape.bounds();
     QueryBox box;
-    box.axes = back * placed.pose.rotation;
-    box.radius = placed.shape.radius();
+    box.center = bounds.center();
+    box.radius = shape.radius();
     box.half = (glm::max)(bounds.half_extents() - box.radius, glm::dvec3(0.0));
-    const glm::dvec3 offset = placed.pose.translation - pose.translation;
-    box.center = back * (placed.pose.rotation * bounds.center() + offset);
-    box.rounding = rounding_of(bounds.center(), offset);
     for (int k = 0; k < 3; ++k) {  // bounds are rounded outward: without a core's own half extent that is left
         if (!(box.half[k] <= 0x1p-40 * box.radius)) continue;
         box.rounding += box.half[k];
         box.half[k] = 0.0;
     }
+    return box;
+}
+
+QueryBox box_around(const ShapeAtPose& placed, const RigidTransform& pose) {
+    const glm::dmat3 back = glm::inverse(pose.rotation);
+    const glm::dvec3 offset = placed.pose.translation - pose.translation;
+    QueryBox box = core_box(placed.shape);
+    box.axes = back * placed.pose.rotation;
+    box.rounding += rounding_of(box.center, offset);
+    box.center = back * (placed.pose.rotation * box.center + offset);
     return box;
 }
 

@@ -23,9 +23,14 @@ struct QueryBox {
     double rounding = 0.0;  // how far the center may be off
 };
 
-// Around the shape, in the frame of `pose`.
+// How far the products of m's columns are from those of a rotation: |(Mᵀ M − 1) v| is at most three times as much for
+// unit vectors v.
+[[nodiscard]] double skew(const glm::dmat3& m);
+// The box around the shape's core and the radius, in the shape's own frame.
+[[nodiscard]] QueryBox core_box(const Shape& shape);
+// The same in the frame of `pose`.
 [[nodiscard]] QueryBox box_around(const ShapeAtPose& shape, const RigidTransform& pose);
-// The same box seen from the frame of `pose`.
+// The box as seen from the frame of `pose`.
 [[nodiscard]] QueryBox seen_from(const QueryBox& box, const RigidTransform& pose);
 [[nodiscard]] Aabb bounds_of(const QueryBox& box);
 

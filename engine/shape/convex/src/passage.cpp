@@ -16,14 +16,6 @@ namespace {
 constexpr int kRounds = 3;
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-// Of |(Mᵀ M − 1) v| for unit vectors v, at most.
-double skew(const glm::dmat3& m) {
-    double most = 0.0;
-    for (int i = 0; i < 3; ++i)
-        for (int j = 0; j <= i; ++j) most = std::max(most, std::abs(glm::dot(m[i], m[j]) - (i == j ? 1.0 : 0.0)));
-    return 3.0 * most;
-}
-
 double sum_abs(const glm::dvec3& v) {
     return std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
 }
@@ -82,7 +74,7 @@ Passage::Passage(const ShapeAtPose& shape, const RigidTransform& surface, const 
     const glm::dmat3 back = glm::inverse(surface.rotation);
     velocity_ = back * velocity;
     speed_ = glm::length(velocity_);
-    const double turn = skew(surface.rotation), bent = skew(box_.axes);
+    const double turn = 3.0 * skew(surface.rotation), bent = 3.0 * skew(box_.axes);
     radius_ = box_.radius * (1.0 + 2.0 * (turn + bent));
     box_.radius = 0.0;
     more_ = 0.5 * tolerance * (1.0 + 2.0 * (turn + bent));

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Carries the memory of last step's contact points over to this step's.
 #include <algorithm>
 #include <crofton/convex/query.hpp>
 

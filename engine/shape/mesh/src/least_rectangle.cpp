@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Sixteen rectangles around points at once, compiled for each instruction set and chosen at run time.
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "least_rectangle.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h:
 #include <hwy/highway.h>

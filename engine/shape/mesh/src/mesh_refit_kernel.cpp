@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Boxes that follow their vertices, compiled for each instruction set and chosen at run time.
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "mesh_refit_kernel.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h:
 #include <hwy/cache_control.h>

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
 // The pairwise descent through two mesh trees, compiled for each instruction set and chosen at run time.
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "mesh_traversal.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h:
 #include <hwy/cache_control.h>

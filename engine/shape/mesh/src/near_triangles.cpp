@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Tests one box against a mesh tree, compiled for each instruction set and chosen at run time.
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "near_triangles.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h:
 #include <hwy/highway.h>

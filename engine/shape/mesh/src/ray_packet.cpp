@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Traces neighbouring rays together: each node is first tested for all of them at once. Compiled for each instruction
 // set and chosen at run time.
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "ray_packet.cpp"
 #include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 // After foreach_target.h:

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Traces a ray through a mesh tree, compiled for each instruction set and chosen at run time.
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "ray_traversal.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h:
 #include <hwy/highway.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Estimates form factors from traced lines.
 #include <crofton/core/error.hpp>
 #include <crofton/core/recovery.hpp>
 #include <crofton/radiosity/patches.hpp>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Groups small triangles into patches.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Finds what a view sees of a binary tree.
 #include <algorithm>
 #include <crofton/study/binary_tree.hpp>
 

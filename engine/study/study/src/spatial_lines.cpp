@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Measures the lines that meet all of several bodies.
 #include <crofton/geometry/trigonometry.hpp>
 #include <crofton/measure/measure.hpp>
 #include <crofton/sampling/sampling.hpp>

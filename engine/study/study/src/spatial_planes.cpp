@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Measures the planes that meet all of several bodies.
 #include <crofton/geometry/finite.hpp>
 #include <limits>
 #include <numbers>

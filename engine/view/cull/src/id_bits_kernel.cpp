@@ -6,8 +6,6 @@
 
 // Also compile for AVX-512 VBMI2, which compresses bytes.
 #define HWY_WANT_AVX3_DL 1
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "id_bits_kernel.cpp"
 // clang-format off
 #include <hwy/foreach_target.h>
 // clang-format on

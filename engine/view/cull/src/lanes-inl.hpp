@@ -39,6 +39,11 @@ HWY_INLINE std::uint32_t bits_of(MF mask) {
     return simd::mask_bits(DF(), mask);
 }
 
+template <class Visit>
+HWY_INLINE void for_each_bit(std::uint32_t bits, const Visit& visit) {
+    for (; bits; bits &= bits - 1) visit(static_cast<unsigned>(hwy::Num0BitsBelowLS1Bit_Nonzero32(bits)));
+}
+
 // The lowest bits as a mask.
 HWY_INLINE hn::Mask<DU> mask_of(std::uint64_t bits) {
     return simd::mask_from_bits(DU(), bits);

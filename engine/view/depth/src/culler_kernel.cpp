@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "culler_data.hpp"
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "culler_kernel.cpp"
 // clang-format off
 #include <hwy/foreach_target.h>
 // clang-format on

@@ -5,8 +5,6 @@
 
 #include "buffer_data.hpp"
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "draw_kernel.cpp"
 // clang-format off
 #include <hwy/foreach_target.h>
 // clang-format on
@@ -21,8 +19,8 @@ namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 
 // Eight lanes at most, so that a vector never holds more than a row of a tile.
-using DF = hn::CappedTag<float, kTile>;
-using VF = hn::Vec<DF>;
+using DT = hn::CappedTag<float, kTile>;
+using VT = hn::Vec<DT>;
 
 // The columns [begin, end) that a body covers, in each row of a tile row.
 struct Spans {
@@ -35,17 +33,17 @@ struct Spans {
 class BodyDrawer {
   public:
     BodyDrawer(const DrawBody& body, const DrawTarget& target) : body_(body), target_(target) {
-        const DF d;
+        const DT d;
         const PreparedBody& b = *body.body;
         plane_count_ = b.plane_count;
         for (std::size_t p = 0; p < plane_count_; ++p) {
             const DepthPlane& plane = body.planes[p];
             rises_[p] = 8.0f * (std::max(plane.across, 0.0f) + std::max(plane.up, 0.0f)) -
                         (std::min(plane.across, 0.0f) + std::min(plane.up, 0.0f));
-            const VF across = hn::Set(d, plane.across), up = hn::Set(d, plane.up);
+            const VT across = hn::Set(d, plane.across), up = hn::Set(d, plane.up);
             for (std::size_t i = 0; i < kTilePixels; i += hn::Lanes(d)) {
-                const VF column = hn::Iota(d, static_cast<float>(i % kTile));
-                const VF row = hn::Set(d, static_cast<float>(i / kTile));
+                const VT column = hn::Iota(d, static_cast<float>(i % kTile));
+                const VT row = hn::Set(d, static_cast<float>(i / kTile));
                 hn::Store(hn::Add(hn::Mul(across, column), hn::Mul(up, row)), d, steps_[p] + i);
             }
         }
@@ -81,15 +79,15 @@ class BodyDrawer {
 
     // Rows outside of the body's get empty spans.
     bool find_spans(std::uint32_t tile_row, Spans& spans) const {
-        const DF d;
-        const hn::RebindToSigned<DF> di;
+        const DT d;
+        const hn::RebindToSigned<DT> di;
         const PreparedBody& b = *body_.body;
-        const VF most = hn::Set(d, static_cast<float>(target_.width));
+        const VT most = hn::Set(d, static_cast<float>(target_.width));
         bool any = false;
-        VF first = most, last = hn::Zero(d), common_first = last, common_last = most;
+        VT first = most, last = hn::Zero(d), common_first = last, common_last = most;
         for (std::size_t r = 0; r < kTile; r += hn::Lanes(d)) {
-            const VF row = hn::Iota(d, static_cast<float>(tile_row * kTile + r));
-            VF left = hn::Zero(d), right = most;
+            const VT row = hn::Iota(d, static_cast<float>(tile_row * kTile + r));
+            VT left = hn::Zero(d), right = most;
             for (std::size_t s = 0; s < b.left_count; ++s) left = hn::Max(left, column_of(body_.sides[s], row));
             for (std::size_t s = 0; s < b.right_count; ++s)
                 right = hn::Min(right, column_of(body_.sides[b.left_count + s], row));
@@ -114,8 +112,8 @@ class BodyDrawer {
         return any;
     }
 
-    static HWY_INLINE VF column_of(const Side& side, VF row) {
-        const DF d;
+    static HWY_INLINE VT column_of(const Side& side, VT row) {
+        const DT d;
         return hn::Add(hn::Set(d, side.x), hn::Mul(hn::Set(d, side.slope), hn::Sub(row, hn::Set(d, side.y))));
     }
 
@@ -147,9 +145,9 @@ class BodyDrawer {
         return nearest;
     }
 
-    HWY_INLINE VF depth_at(std::size_t i) const {
-        const DF d;
-        VF depth = hn::Add(hn::Set(d, bases_[0]), hn::Load(d, steps_[0] + i));
+    HWY_INLINE VT depth_at(std::size_t i) const {
+        const DT d;
+        VT depth = hn::Add(hn::Set(d, bases_[0]), hn::Load(d, steps_[0] + i));
         for (std::size_t p = 1; p < plane_count_; ++p)
             depth = hn::Min(depth, hn::Add(hn::Set(d, bases_[p]), hn::Load(d, steps_[p] + i)));
         return depth;
@@ -157,22 +155,22 @@ class BodyDrawer {
 
     // Both return the least nearness of the tile's pixels after drawing.
     HWY_INLINE float draw_whole(float* pixels) const {
-        const DF d;
-        VF least = hn::Set(d, 3e38f);
+        const DT d;
+        VT least = hn::Set(d, 3e38f);
         for (std::size_t i = 0; i < kTilePixels; i += hn::Lanes(d)) {
-            const VF depth = hn::Max(hn::Load(d, pixels + i), depth_at(i));
+            const VT depth = hn::Max(hn::Load(d, pixels + i), depth_at(i));
             hn::Store(depth, d, pixels + i);
             least = hn::Min(least, depth);
         }
         return hn::GetLane(hn::MinOfLanes(d, least));
     }
     HWY_INLINE float draw_part(float* pixels, std::uint64_t mask) const {
-        const DF d;
-        VF least = hn::Set(d, 3e38f);
+        const DT d;
+        VT least = hn::Set(d, 3e38f);
         for (std::size_t i = 0; i < kTilePixels; i += hn::Lanes(d)) {
-            const VF before = hn::Load(d, pixels + i);
+            const VT before = hn::Load(d, pixels + i);
             const auto covered = simd::HWY_NAMESPACE::mask_from_bits(d, mask >> i & 0xffu);
-            const VF depth = hn::IfThenElse(covered, hn::Max(before, depth_at(i)), before);
+            const VT depth = hn::IfThenElse(covered, hn::Max(before, depth_at(i)), before);
             hn::Store(depth, d, pixels + i);
             least = hn::Min(least, depth);
         }

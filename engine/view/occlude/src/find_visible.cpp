@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Finds the objects that occluders leave visible.
 #include <algorithm>
 #include <bit>
 #include <crofton/boxtree/box_tree.hpp>

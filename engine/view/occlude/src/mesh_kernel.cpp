@@ -7,8 +7,6 @@
 
 #include "buffer_data.hpp"
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "mesh_kernel.cpp"
 // clang-format off
 #include <hwy/foreach_target.h>
 // clang-format on

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Projects an occluder and lists the edges that its drawing needs.
 #include <algorithm>
 #include <cmath>
 #include <crofton/occlude/occluder.hpp>

@@ -9,8 +9,6 @@
 
 #include "buffer_data.hpp"
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "query_kernel.cpp"
 // clang-format off
 #include <hwy/foreach_target.h>
 // clang-format on

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "box_kernel.hpp"
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "box_kernel.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h:
 #include <hwy/highway.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Validates flat polygons with holes, and joins their triangles into a mesh.
 #include <cmath>
 #include <crofton/core/recovery.hpp>
 #include <crofton/geometry/finite.hpp>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Inserts a polygon's edges into a Delaunay triangulation by edge flips.
 #include <algorithm>
 #include <crofton/core/error.hpp>
 #include <crofton/geometry/predicates.hpp>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Tells input points at one position apart: finds which of them a triangle uses.
 #include <algorithm>
 
 #include "domain/domain.hpp"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Finds the triangles inside a polygon, and rings that overlap.
 #include <algorithm>
 #include <crofton/geometry/predicates.hpp>
 

@@ -5,8 +5,6 @@
 #include <limits>
 #include <type_traits>
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "cloud/cloud_kernels.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 

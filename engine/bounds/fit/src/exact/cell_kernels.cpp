@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "exact/cell_kernels.hpp"
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "exact/cell_kernels.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 #include <crofton/simd/compress-inl.hpp>
@@ -12,8 +10,8 @@ namespace crofton::fit::kernels::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 namespace simd = crofton::simd::HWY_NAMESPACE;
-using Tag = hn::CappedTag<double, kBatch>;
-using V = hn::Vec<Tag>;
+using CellTag = hn::CappedTag<double, kBatch>;
+using V = hn::Vec<CellTag>;
 
 // Products and sums are rounded one by one (no fused operations), so that every instruction set gives the same bits.
 struct V3 {
@@ -21,7 +19,7 @@ struct V3 {
 };
 
 HWY_INLINE V splat(double value) {
-    return hn::Set(Tag(), value);
+    return hn::Set(CellTag(), value);
 }
 HWY_INLINE V3 operator+(const V3& a, const V3& b) {
     return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
@@ -212,7 +210,7 @@ HWY_INLINE V improve(const Splat& w, const SideLists& lists, const Geometry& g, 
                      double target) {
     V3 cut[kCuts][6];
     for (int round = 0; round < kCuts; ++round) {
-        if (hn::AllTrue(Tag(), hn::Ge(bound, splat(target)))) break;
+        if (hn::AllTrue(CellTag(), hn::Ge(bound, splat(target)))) break;
         V3 d[3];
         chords(f, mix, d);
         const V factor[3] = {slope(w, d[1].y, d[2].z), slope(w, d[2].z, d[0].x), slope(w, d[0].x, d[1].y)};
@@ -260,7 +258,7 @@ HWY_INLINE V3 variation(const Splat& w, const Geometry& g, const V3 d[3]) {
 }
 
 void evaluate_cells(const Weights& weights, const SideLists& lists, double target, CellBatch& batch) {
-    const Tag tag;
+    const CellTag tag;
     const Splat w = {splat(weights.product), splat(weights.pairs), splat(weights.sum)};
     for (std::size_t i = 0; i < kBatch; i += hn::Lanes(tag)) {
         const V3 c = {hn::Load(tag, batch.center[0] + i), hn::Load(tag, batch.center[1] + i),
@@ -292,7 +290,7 @@ void evaluate_cells(const Weights& weights, const SideLists& lists, double targe
 
 std::size_t filter_list(const SideLists& lists, std::size_t side, const CellBatch& batch, std::size_t cell,
                         const ListOut& out) {
-    const Tag tag;
+    const CellTag tag;
     const std::size_t k = side / 2, a = (k + 1) % 3, b = (k + 2) % 3, count = lists.count[side];
     const Frame f =
         rotation({splat(batch.center[0][cell]), splat(batch.center[1][cell]), splat(batch.center[2][cell])});

@@ -3,8 +3,6 @@
 
 #include <bit>
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "small_set/kernels.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 #include <crofton/simd/mask_bits-inl.hpp>

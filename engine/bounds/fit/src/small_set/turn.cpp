@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
+// Tries sixteen frames about one axis at once.
 #include "small_set/kernels.hpp"
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "small_set/turn.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 

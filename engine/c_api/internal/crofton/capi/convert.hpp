@@ -32,6 +32,9 @@ static_assert(CROFTON_MAX_PLANES == Frustum::kMaxPlanes);
 [[nodiscard]] inline glm::dvec3 to_vector(const double* v) {
     return {v[0], v[1], v[2]};
 }
+inline void copy_out(const glm::dvec3& v, double* result) {
+    std::memcpy(result, &v.x, 3 * sizeof(double));
+}
 
 [[nodiscard]] inline Transform to_transform(const crofton_transform& transform) {
     Transform result;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "lights/froxel_kernel.hpp"
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "lights/froxel_kernel.cpp"
 // clang-format off
 #include <hwy/foreach_target.h>
 // clang-format on

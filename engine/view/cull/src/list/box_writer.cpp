@@ -7,8 +7,6 @@
 #include <cstring>
 #include <limits>
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "list/box_writer.cpp"
 // clang-format off
 #include <hwy/foreach_target.h>
 // clang-format on

@@ -6,8 +6,6 @@
 #include <cstddef>
 #include <cstring>
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "list/direct_kernel.cpp"
 // clang-format off
 #include <hwy/foreach_target.h>
 // clang-format on

@@ -7,8 +7,6 @@
 
 // Also compile for AVX-512 VNNI (`vpdpwssd`).
 #define HWY_WANT_AVX3_DL 1
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "list/list_views_kernel.cpp"
 // clang-format off
 #include <hwy/foreach_target.h>
 // clang-format on
@@ -196,13 +194,13 @@ class ChunkViews {
     std::size_t open_counts_[2];
 };
 
-void run_boxes(const ListViewsInput<BoxRecord>& input, std::uint32_t* masks, ListViewCost* costs) {
+void run_box_views(const ListViewsInput<BoxRecord>& input, std::uint32_t* masks, ListViewCost* costs) {
     ChunkViews<BoxRecord>(input, masks).run(costs);
 }
-void run_aabbs(const ListViewsInput<AabbRecord>& input, std::uint32_t* masks, ListViewCost* costs) {
+void run_aabb_views(const ListViewsInput<AabbRecord>& input, std::uint32_t* masks, ListViewCost* costs) {
     ChunkViews<AabbRecord>(input, masks).run(costs);
 }
-void run_spheres(const ListViewsInput<SphereRecord>& input, std::uint32_t* masks, ListViewCost* costs) {
+void run_sphere_views(const ListViewsInput<SphereRecord>& input, std::uint32_t* masks, ListViewCost* costs) {
     ChunkViews<SphereRecord>(input, masks).run(costs);
 }
 
@@ -213,18 +211,18 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace crofton::cull {
 
-HWY_EXPORT(run_boxes);
-HWY_EXPORT(run_aabbs);
-HWY_EXPORT(run_spheres);
+HWY_EXPORT(run_box_views);
+HWY_EXPORT(run_aabb_views);
+HWY_EXPORT(run_sphere_views);
 
 void run_list_views_kernel(const ListViewsInput<BoxRecord>& input, std::uint32_t* masks, ListViewCost* costs) {
-    HWY_DYNAMIC_DISPATCH(run_boxes)(input, masks, costs);
+    HWY_DYNAMIC_DISPATCH(run_box_views)(input, masks, costs);
 }
 void run_list_views_kernel(const ListViewsInput<AabbRecord>& input, std::uint32_t* masks, ListViewCost* costs) {
-    HWY_DYNAMIC_DISPATCH(run_aabbs)(input, masks, costs);
+    HWY_DYNAMIC_DISPATCH(run_aabb_views)(input, masks, costs);
 }
 void run_list_views_kernel(const ListViewsInput<SphereRecord>& input, std::uint32_t* masks, ListViewCost* costs) {
-    HWY_DYNAMIC_DISPATCH(run_spheres)(input, masks, costs);
+    HWY_DYNAMIC_DISPATCH(run_sphere_views)(input, masks, costs);
 }
 
 }  // namespace crofton::cull

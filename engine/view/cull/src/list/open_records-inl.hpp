@@ -32,11 +32,6 @@ struct Sixteen {
     }
 };
 
-template <class Visit>
-HWY_INLINE void for_each_bit(std::uint32_t bits, const Visit& visit) {
-    for (; bits; bits &= bits - 1) visit(static_cast<unsigned>(hwy::Num0BitsBelowLS1Bit_Nonzero32(bits)));
-}
-
 template <class Record>
 HWY_INLINE void prefetch_record(const Record* records, std::uint32_t i) {
     hwy::Prefetch(records + i);

@@ -6,8 +6,6 @@
 
 // Also compile for AVX-512 VNNI (`vpdpwssd`).
 #define HWY_WANT_AVX3_DL 1
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "tree/tree_kernel.cpp"
 // clang-format off
 #include <hwy/foreach_target.h>
 // clang-format on

@@ -8,8 +8,6 @@
 
 // Also compile for AVX-512 VNNI (`vpdpwssd`).
 #define HWY_WANT_AVX3_DL 1
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "views/many_views_kernel.cpp"
 // clang-format off
 #include <hwy/foreach_target.h>
 // clang-format on
@@ -25,11 +23,6 @@ namespace {
 constexpr std::uint32_t kWhole = 1u << 31;
 
 using DP = hn::Rebind<std::uint16_t, DU>;
-
-template <class Visit>
-HWY_INLINE void for_each_bit(std::uint32_t bits, const Visit& visit) {
-    for (; bits; bits &= bits - 1) visit(static_cast<unsigned>(hwy::Num0BitsBelowLS1Bit_Nonzero32(bits)));
-}
 
 // Many views through one tree. First each view goes through the nodes alone. It notes the leaves that are fully inside,
 // and those that must be tested. Then one pass over the noted leaves answers for all views: each leaf is read once.

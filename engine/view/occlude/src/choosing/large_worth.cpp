@@ -18,12 +18,12 @@ glm::dvec3 row_direction(const std::array<double, 4>& row) {
 }
 
 // The part of a ray within a box, in multiples of the ray's direction.
-struct Stretch {
+struct Interval {
     double begin, end;
 };
 
-Stretch stretch_in(const Aabb& box, const glm::dvec3& start, const glm::dvec3& along) {
-    Stretch result{-1e300, 1e300};
+Interval interval_in(const Aabb& box, const glm::dvec3& start, const glm::dvec3& along) {
+    Interval result{-1e300, 1e300};
     for (int k = 0; k < 3; ++k) {
         const double step = std::fabs(along[k]) > 1e-200 ? along[k] : 1e-200;
         const double a = (box.min[k] - start[k]) / step, b = (box.max[k] - start[k]) / step;
@@ -126,7 +126,7 @@ float LargeWorth::of(const CandidatePage& page, std::size_t i, float cover, floa
     for (int y = 0; y < kRaysASide; ++y)
         for (int x = 0; x < kRaysASide; ++x) {
             const Ray ray = ray_through(common.min + step * glm::dvec2(x + 0.5, y + 0.5));
-            const Stretch own = stretch_in(bounds, ray.start, ray.along);
+            const Interval own = interval_in(bounds, ray.start, ray.along);
             const double nearest = view_.perspective ? std::max(own.begin, 0.0) : own.begin;
             if (!(nearest <= own.end)) continue;
             const double length = glm::length(ray.along);
@@ -138,7 +138,7 @@ float LargeWorth::of(const CandidatePage& page, std::size_t i, float cover, floa
             const double across = glm::dot(thin, ray.along);
             const double middle = across != 0.0 ? glm::dot(thin, center - ray.start) / across : nearest;
             const double met = std::clamp(middle, nearest, own.end);
-            const Stretch behind = stretch_in(objects_, ray.start, ray.along);
+            const Interval behind = interval_in(objects_, ray.start, ray.along);
             worth += share * length * std::max(0.0, behind.end - std::max(behind.begin, met));
         }
     const double cell = step.x * step.y;

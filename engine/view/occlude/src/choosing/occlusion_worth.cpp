@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Estimates by sampled cameras how much an occluder hides.
 #include <algorithm>
 #include <cmath>
 #include <crofton/core/memory.hpp>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Defines the callback by which a caller ends a long operation.
 #pragma once
 #include <crofton/core/version.hpp>
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Marks the time in which a thread runs the host's code.
 #pragma once
 
 namespace crofton::detail {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Ranks a few floats without branches.
 #pragma once
 #include <algorithm>
 #include <cstddef>
