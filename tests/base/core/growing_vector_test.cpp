@@ -97,4 +97,20 @@ TEST_SUITE("core/growing_vector") {
         CHECK(memory.bytes_in_use() < 120'000 * sizeof(std::uint64_t));
         CHECK(growing[99'000] == 7);
     }
+
+    TEST_CASE("as many elements as pages were reserved for take no memory, and stay where they are") {
+        const crofton::testing::CountingMemory memory;
+        GrowingVector<std::uint64_t> growing;
+        growing.append(50'000, 3);
+        growing.reserve_pages(100'000);
+        const std::size_t taken = memory.bytes_taken();
+        const std::uint64_t* const data = growing.data();
+        for (std::uint64_t i = 50'000; i < 100'000; ++i) growing.append(i);
+        growing.reserve_pages(99'000);  // as much is there
+        CHECK(memory.bytes_taken() == taken);
+        CHECK(growing.data() == data);
+        CHECK(growing.size() == 100'000);
+        CHECK(growing[49'999] == 3);
+        CHECK(growing[99'999] == 99'999);
+    }
 }

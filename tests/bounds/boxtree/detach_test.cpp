@@ -192,4 +192,24 @@ TEST_SUITE("boxtree/detach") {
             CHECK(!detached.empty());
         }
     }
+
+    TEST_CASE("boxes of items that were reserved for stay where they are, and the tree holds the same") {
+        oracle::NearMisses random(53);
+        BoxTree tree = *BoxTree::build({}), plain = *BoxTree::build({});
+        CHECK(error_of(tree.reserve((std::size_t{1} << 30) + 1)).code == ErrorCode::out_of_range);
+        REQUIRE(tree.reserve(5000).has_value());
+        REQUIRE(tree.reserve(10).has_value());
+        const Obb* const boxes = tree.boxes().data();
+        for (int i = 0; i < 5000; ++i) {
+            const Obb box = oracle::random_box(random, {}, 50.0);
+            REQUIRE(tree.insert(box).has_value());
+            REQUIRE(plain.insert(box).has_value());
+            (void)tree.rebuild_step(500);
+            (void)plain.rebuild_step(500);
+        }
+        CHECK(tree.boxes().data() == boxes);
+        CHECK(tree.validate().has_value());
+        CHECK(holds_all(tree));
+        CHECK(tree.serialise() == plain.serialise());
+    }
 }
