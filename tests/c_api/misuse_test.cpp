@@ -87,6 +87,7 @@ TEST_SUITE("capi/misuse") {
         crofton_shape* shape = nullptr;
         crofton_region* region = nullptr;
         crofton_clustered_mesh* clustered = nullptr;
+        const Triangulator triangulator = make_triangulator();
         const crofton_transform pose = translation(0, 0, 0);
         constexpr std::size_t kBeyond = std::size_t{UINT32_MAX} + 1;
         for (const std::size_t count : {kBeyond, 3 * kBeyond, SIZE_MAX / 64, SIZE_MAX / 16, SIZE_MAX / 8, SIZE_MAX}) {
@@ -134,6 +135,15 @@ TEST_SUITE("capi/misuse") {
             description.poses = &pose;
             description.child_count = count;
             CHECK(crofton_shape_create(&description, &shape) == CROFTON_OUT_OF_RANGE);
+            const double square[8] = {0, 0, 1, 0, 1, 1, 0, 1};
+            const std::uint32_t end = 4;
+            auto polygon = sized<crofton_polygon>();
+            polygon.points = square;
+            polygon.point_count = 4;
+            polygon.ring_ends = &end;
+            polygon.ring_count = count;
+            auto triangles = sized<crofton_triangulation>();
+            CHECK(crofton_triangulate(triangulator.get(), &polygon, 0, &triangles) == CROFTON_OUT_OF_RANGE);
         }
         CHECK(shape == nullptr);
         CHECK(region == nullptr);

@@ -79,7 +79,9 @@ SharedShape rounded_shape(const SharedShape& core, double radius) {
 SharedShape compound_shape(const py::sequence& children) {
     auto result = std::make_shared<PyShape>();
     std::vector<convex::CompoundChild> parts;
-    for (const py::object one : children) {  // held: a sequence may make its items as it is asked
+    // Held: a sequence may make its items as it is asked.
+    for (const py::handle item : py::reinterpret_borrow<py::iterable>(children)) {
+        const auto one = py::reinterpret_borrow<py::object>(item);
         const bool is_pair = py::isinstance<py::tuple>(one) && py::len(one) == 2;
         const py::object shape = is_pair ? py::object(one.cast<py::tuple>()[0]) : one;
         if (!py::isinstance<PyShape>(shape)) raise_type("children: shapes, or pairs (shape, pose), are expected");

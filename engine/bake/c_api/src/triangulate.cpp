@@ -23,6 +23,8 @@ crofton_status copy_polygon(const crofton_polygon* polygon, const char* function
     CROFTON_CHECK(check_struct(polygon, function));
     CROFTON_CHECK(check_array(polygon->points, polygon->point_count, function, 2));
     CROFTON_CHECK(check_array(polygon->ring_ends, polygon->ring_count, function));
+    if (polygon->point_count > CROFTON_NONE || polygon->ring_count > CROFTON_NONE)
+        return report(CROFTON_OUT_OF_RANGE, function, "32 bits number the points and the rings");
     std::uint32_t end = 0;
     for (std::size_t r = 0; r < polygon->ring_count; ++r) {
         if (polygon->ring_ends[r] < end || polygon->ring_ends[r] > polygon->point_count)

@@ -362,7 +362,7 @@ CROFTON_API crofton_status crofton_world_get_mesh(const crofton_world* world, cr
 /* Sets *contains to 1 or 0. */
 CROFTON_API crofton_status crofton_world_contains_node(const crofton_world* world, crofton_node node, int* contains);
 
-/* Lists the objects that `count` views see, 1 to 32: objects whose boxes they see and, with occlusion, that are not
+/* Lists the objects that `count` views see, at most 32: objects whose boxes they see and, with occlusion, that are not
  * hidden. Each object is listed once. Each request has its own options. `jobs` or NULL.
  *
  * All requests have the same `size` and are that many bytes apart. On an error, crofton_last_error_item is the place of
