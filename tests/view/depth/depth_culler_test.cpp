@@ -332,7 +332,7 @@ TEST_CASE("an eye within closed meshes that lie about one another lists little m
         listed += c.listed, owners += c.owners;
     }
     MESSAGE("listed " << listed << ", owners " << owners);
-    CHECK(listed < 4 * owners);
+    CHECK(listed < 2 * owners);
 }
 
 // Hills whose coordinates lie far from 0 beside hills near 0, before the eye. What is drawn differs from what was cut

@@ -25,34 +25,11 @@ struct PatchVertices {
     alignas(64) float x[kMaxPatchVertices], y[kMaxPatchVertices], z[kMaxPatchVertices], w[kMaxPatchVertices];
 };
 
-// A line through the picture's rows, which limits a row's samples on one side: at + per_row · (y − at_y).
+// A line through the picture's rows: a row's samples on it are at at_x + per_row · (y − at_y), where at_x is `low` for
+// those that what is right of it may cover, and `high` for what is left.
 struct Line {
-    float per_row, at_y, at;
-};
-
-// What is right of some lines, and left of others.
-struct Lines {
-    static constexpr std::uint32_t kMost = 6, kUsual = 2;
-
-    // The usual ones are no limit until they are set.
-    static constexpr float kInfinity = std::numeric_limits<float>::infinity();
-    Line low[kMost + 1] = {{0.0f, 0.0f, -kInfinity}, {0.0f, 0.0f, -kInfinity}};
-    Line high[kMost + 1] = {{0.0f, 0.0f, kInfinity}, {0.0f, 0.0f, kInfinity}};
-    std::uint32_t lows = 0, highs = 0;
-
-    // `least` is −∞, or `most` ∞: that is no limit.
-    HWY_INLINE void add(float per_row, float at_y, float least, float most) {
-        const bool is_low = least != -kInfinity, is_high = most != kInfinity;
-        set(low, lows, is_low, {per_row, at_y, least});
-        set(high, highs, is_high, {per_row, at_y, most});
-    }
-
-  private:
-    // Without a jump, which would be hard to predict.
-    static HWY_INLINE void set(Line* lines, std::uint32_t& count, bool counts, const Line& line) {
-        lines[counts ? count : kMost] = line;
-        count += counts;
-    }
+    float per_row, at_y;
+    float low, high;  // −∞ and ∞ where the line is no limit
 };
 
 // What is known of eight triangles.

@@ -24,11 +24,7 @@ namespace crofton::depth::HWY_NAMESPACE {
 
 // Beyond these a triangle is not drawn: where it is too near, and where the near plane cuts it.
 struct NearLimits {
-    // One of `low` and `high` is infinite, and no limit.
-    struct Limit {
-        float per_row, at_y, low, high;
-    };
-    Limit limits[2];
+    Line lines[2];
     std::uint32_t count;
 };
 
@@ -195,8 +191,8 @@ class NearFaceSetup {
         const double length = std::abs(across) + std::abs(up);
         if (!(length * (picture_.half_width + picture_.half_height) > 1e-6 * std::abs(constant))) return constant > 0.0;
         const Pivot pivot = pivot_of(across / length, up / length, constant / length);
-        limits.limits[limits.count++] = {pivot.per_row, pivot.at_y, pivot.right ? pivot.at_x + pivot.offset : -infinity,
-                                         pivot.right ? infinity : pivot.at_x - pivot.offset};
+        limits.lines[limits.count++] = {pivot.per_row, pivot.at_y, pivot.right ? pivot.at_x + pivot.offset : -infinity,
+                                        pivot.right ? infinity : pivot.at_x - pivot.offset};
         return true;
     }
 

@@ -194,18 +194,15 @@ class PatchDrawer {
 
     // As one, if there is another.
     HWY_INLINE void draw(std::uint32_t t, std::uint32_t other) {
-        Lines lines;
-        add_lines(t, other == t, lines);
+        Line lines[Rasterizer::kMaxLines];
+        std::uint32_t count = append_lines(t, other == t, lines);
         if (other != t) {
-            add_lines(other, false, lines);
+            count += append_lines(other, false, lines + count);
             widen(t, other);
         } else if (unclear_) {
-            for (std::uint32_t k = 0; k < limits_[t].count; ++k) {
-                const NearLimits::Limit& limit = limits_[t].limits[k];
-                lines.add(limit.per_row, limit.at_y, limit.low, limit.high);
-            }
+            for (std::uint32_t k = 0; k < limits_[t].count; ++k) lines[count++] = limits_[t].lines[k];
         }
-        rasterizer(t).draw(lines, excluded_);
+        rasterizer(t).draw(lines, count, excluded_);
     }
 
     [[nodiscard]] HWY_INLINE Rasterizer rasterizer(std::uint32_t t) {
@@ -308,11 +305,13 @@ class PatchDrawer {
     }
 
     // But for the common edge of two.
-    HWY_INLINE void add_lines(std::uint32_t t, bool alone, Lines& to) {
+    HWY_INLINE std::uint32_t append_lines(std::uint32_t t, bool alone, Line* to) {
         const Faces& f = faces(t);
         const std::uint32_t i = lane(t), common = alone ? 3 : longest_edge(t);
+        std::uint32_t count = 0;
         for (std::uint32_t k = 0; k < 3; ++k)
-            if (k != common) to.add(f.per_row[k][i], f.at_y[k][i], f.low[k][i], f.high[k][i]);
+            if (k != common) to[count++] = {f.per_row[k][i], f.at_y[k][i], f.low[k][i], f.high[k][i]};
+        return count;
     }
 
     HWY_INLINE void widen(std::uint32_t t, std::uint32_t other) {

@@ -73,20 +73,20 @@ class Rasterizer {
     // True if a sample may be the triangle's.
     HWY_INLINE bool shows() {
         if (shows_in_middle()) return true;
-        Lines lines;
+        Line lines[3];
         for (std::uint32_t k = 0; k < 3; ++k)
-            lines.add(f_.per_row[k][i_], f_.at_y[k][i_], f_.ask_low[k][i_], f_.ask_high[k][i_]);
+            lines[k] = {f_.per_row[k][i_], f_.at_y[k][i_], f_.ask_low[k][i_], f_.ask_high[k][i_]};
         for (std::int32_t first = x0_ / 8; first <= x1_ / 8; first += static_cast<std::int32_t>(hn::Lanes(DF())))
             if (shows_in_columns(first, lines)) return true;
         return false;
     }
 
     // Raises the tiles where the lines leave samples: they are surely covered.
-    HWY_INLINE void draw(const Lines& lines, const ExcludedSamples& excluded) {
+    HWY_INLINE void draw(const Line* lines, std::uint32_t count, const ExcludedSamples& excluded) {
         // Of the whole triangle, so that what is drawn does not depend on which tiles are here.
         const bool wide = f_.x1[i_] / 8 - f_.x0[i_] / 8 > kNarrow;
         for (std::int32_t ty = y0_ / 8; ty <= y1_ / 8; ++ty) {
-            find_band(ty, lines);
+            find_band(ty, lines, count);
             at_row_ = plane_at_row(ty);
             spares_ = excluded.may_be_in_row(ty);
             Interval touched{x0_ / 8, x1_ / 8};
@@ -105,6 +105,8 @@ class Rasterizer {
         }
     }
 
+    static constexpr std::uint32_t kMaxLines = 6;
+
   private:
     // More tiles wide than are worth asking one by one.
     static constexpr std::int32_t kNarrow = 1;
@@ -122,7 +124,7 @@ class Rasterizer {
     }
 
     // True if a sample may be the triangle's in the tiles from column `first` on, as many as there are lanes.
-    HWY_INLINE bool shows_in_columns(std::int32_t first, const Lines& lines) {
+    HWY_INLINE bool shows_in_columns(std::int32_t first, const Line (&lines)[3]) {
         const DF d;
         const auto last = std::min(static_cast<std::int32_t>(hn::Lanes(d)) - 1, x1_ / 8 - first);
         const std::uint32_t those = (2u << last) - 1;
@@ -136,7 +138,7 @@ class Rasterizer {
             // The list is padded by a vector.
             std::uint32_t left =
                 those & ~simd::HWY_NAMESPACE::mask_bits(d, hn::Gt(hn::LoadU(d, tiles_.least + at), most));
-            if (left != 0) find_band(ty, lines);
+            if (left != 0) find_band(ty, lines, 3);
             for (; left != 0; left &= left - 1) {
                 const int i = std::countr_zero(left);
                 if (meets_tile(first + i) && shows_in_tile(first + i, at + static_cast<std::size_t>(i))) return true;
@@ -163,20 +165,18 @@ class Rasterizer {
         return inside;
     }
 
-    HWY_INLINE void find_band(std::int32_t ty, const Lines& lines) {
+    HWY_INLINE void find_band(std::int32_t ty, const Line* lines, std::uint32_t count) {
         const DF d;
         const VF first = hn::Set(d, static_cast<float>(x0_) + 0.5f), last = hn::Set(d, static_cast<float>(x1_) + 0.5f);
         const VF bottom = hn::Set(d, static_cast<float>(y0_)), top = hn::Set(d, static_cast<float>(y1_ + 1));
         for (std::size_t i = 0; i < kTile; i += hn::Lanes(d)) {
             const VF y = steps_from(static_cast<float>(8 * ty) + 0.5f + static_cast<float>(i));
-            const auto at = [&](const Line& line) {
-                const VF from = hn::Mul(hn::Set(d, line.per_row), hn::Sub(y, hn::Set(d, line.at_y)));
-                return hn::Add(hn::Set(d, line.at), from);
-            };
-            VF low = hn::Max(first, hn::Max(at(lines.low[0]), at(lines.low[1])));
-            VF high = hn::Min(last, hn::Min(at(lines.high[0]), at(lines.high[1])));
-            for (std::uint32_t k = Lines::kUsual; k < lines.lows; ++k) low = hn::Max(low, at(lines.low[k]));
-            for (std::uint32_t k = Lines::kUsual; k < lines.highs; ++k) high = hn::Min(high, at(lines.high[k]));
+            VF low = first, high = last;
+            for (std::uint32_t k = 0; k < count; ++k) {
+                const VF from = hn::Mul(hn::Set(d, lines[k].per_row), hn::Sub(y, hn::Set(d, lines[k].at_y)));
+                low = hn::Max(low, hn::Add(hn::Set(d, lines[k].low), from));
+                high = hn::Min(high, hn::Add(hn::Set(d, lines[k].high), from));
+            }
             const auto within = hn::And(hn::Gt(y, bottom), hn::Lt(y, top));
             const VF infinity = hn::Set(d, std::numeric_limits<float>::infinity());
             hn::Store(hn::IfThenElse(within, low, infinity), d, band_.low + i);
