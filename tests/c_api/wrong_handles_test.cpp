@@ -121,6 +121,7 @@ void refuse_modules_queries(Table& table) {
 
 void refuse_depth(Table& table) {
     CROFTON_REFUSE(crofton_clustered_mesh_destroy);
+    CROFTON_REFUSE(crofton_clustered_mesh_lend);
     CROFTON_REFUSE(crofton_clustered_mesh_get);
     CROFTON_REFUSE(crofton_clustered_mesh_box);
     CROFTON_REFUSE(crofton_clustered_mesh_serialise);

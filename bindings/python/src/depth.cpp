@@ -54,12 +54,33 @@ std::shared_ptr<ClusteredMesh> cut(const py::handle& given, const py::handle& gi
     return std::make_shared<ClusteredMesh>(std::move(*mesh));
 }
 
+// The culler follows what is lent without looking again, so that the arrays must be as they were.
+template <class T>
+std::span<const T> read_only(const py::array& given, const char* name, std::size_t width) {
+    if (!py::isinstance<py::array_t<T, py::array::c_style>>(given) || given.writeable())
+        throw py::value_error(std::string(name) +
+                              " must be a contiguous array of the mesh's type that cannot be written: set its "
+                              "flags.writeable to False");
+    return {static_cast<const T*>(given.data()), static_cast<std::size_t>(given.size()) / width * width};
+}
+
+// The arrays live as long as the mesh, which Python keeps them for.
+void lend(ClusteredMesh& mesh, const py::array& positions, const py::array& indices, bool permuted) {
+    const auto numbers = read_only<float>(positions, "positions", 3);
+    if (positions.ndim() != 2 || positions.shape(1) != 3) throw py::value_error("positions must have the shape (n, 3)");
+    const auto corners = read_only<std::uint32_t>(indices, "indices", 1);
+    const auto order = permuted ? depth::IndexOrder::permuted : depth::IndexOrder::original;
+    auto lent = mesh.lend({reinterpret_cast<const glm::vec3*>(numbers.data()), numbers.size() / 3}, corners, order);
+    if (!lent) raise(lent.error());
+}
+
 py::array clusters_of(const ClusteredMesh& mesh) {
     py::array_t<ClusterRecord> result(static_cast<py::ssize_t>(mesh.clusters().size()));
     for (std::size_t c = 0; c < mesh.clusters().size(); ++c) {
         ClusterRecord& record = result.mutable_data()[c];
         const depth::ClusterBox box = mesh.box_of(c);
-        std::memcpy(&record, &mesh.clusters()[c], sizeof(depth::Cluster));
+        const depth::Cluster range = mesh.clusters()[c];
+        std::memcpy(&record, &range, sizeof range);
         std::memcpy(record.center, &box, sizeof box);
     }
     return result;
@@ -217,6 +238,13 @@ void bind_depth(py::module_& module) {
         .def(py::init(&cut), py::arg("positions"), py::arg("indices"), py::arg("max_triangles") = 0,
              "Cuts a mesh given by points (n, 3), stored as float32, and indices, three per triangle. A cluster has up "
              "to `max_triangles` triangles, at most 64; 0 chooses by the mesh's size.")
+        .def("lend", &lend, py::arg("positions"), py::arg("indices"), py::kw_only(), py::arg("permuted") = true,
+             py::keep_alive<1, 2>(), py::keep_alive<1, 3>(),
+             "Reads positions (n, 3), float32, from these arrays from now on, in place of copies. `indices`, uint32, "
+             "are "
+             "the mesh's in `triangle_order`, which is empty then; with permuted=False they are the mesh's own. Both "
+             "must be read-only. If their memory is changed all the same, which is not noticed, views are wrong or the "
+             "process ends. Do not call it while a picture of the mesh is being made.")
         .def_property_readonly(
             "triangle_order", [](const ClusteredMesh& mesh) { return array_of<std::uint32_t>(mesh.triangle_order()); },
             "the mesh's triangles in the order of the clusters: indices.reshape(-1, 3)[triangle_order] is an index "

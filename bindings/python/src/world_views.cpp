@@ -274,7 +274,11 @@ void bind_world_views(py::module_& module, py::class_<PyWorld>& type) {
                     raise({ErrorCode::stale_handle, mesh.index,
                            "mesh: the handle is stale: the mesh was removed, or is of another World"});
                 const depth::ClusteredMesh* const cut = w.clusters_of(mesh);
-                return cut ? std::make_shared<depth::ClusteredMesh>(*cut) : nullptr;
+                if (cut == nullptr) return nullptr;
+                // Which reads no positions of a World that may be gone.
+                auto copy = std::make_shared<depth::ClusteredMesh>(*cut);
+                copy->keep_copy();
+                return copy;
             });
         },
         py::arg("mesh"),

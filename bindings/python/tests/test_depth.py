@@ -59,6 +59,34 @@ def test_clusters_share_out_the_triangles_and_hold_them(most):
         assert (abs(points - cluster["center"].astype("f8")) <= abs(cluster["half_edges"].astype("f8")).sum(axis=0)).all()
 
 
+def test_arrays_that_are_lent_are_read_in_place():
+    positions, indices = wall(20, 3.0)
+    positions, indices = positions.astype("f4"), indices.astype("u4")
+    mesh, original = crofton.ClusteredMesh(positions, indices), crofton.ClusteredMesh(positions, indices)
+    permuted = indices[mesh.triangle_order]
+    with pytest.raises(ValueError, match="positions must be .* cannot be written"):
+        mesh.lend(positions, permuted)
+    for array in (positions, indices, permuted):
+        array.flags.writeable = False
+    with pytest.raises(ValueError, match="indices must be"):
+        mesh.lend(positions, permuted.astype("i8"))
+    with pytest.raises(crofton.Error, match="corner elsewhere"):
+        mesh.lend(positions, indices)
+    expected = [crofton.ClusteredMesh(positions, indices).clusters[name].tolist() for name in ("first_triangle", "center")]
+    order = list(mesh.triangle_order)
+    mesh.lend(positions, permuted)
+    original.lend(positions, indices, permuted=False)
+    assert len(mesh.triangle_order) == 0 and list(original.triangle_order) == order
+    to_clip = np.diag([0.2, 0.2, 0.1, 1.0])
+    del positions, indices, permuted
+    found = []
+    for lent in (mesh, original):
+        assert [lent.clusters[name].tolist() for name in ("first_triangle", "center")] == expected
+        culler = crofton.DepthCuller()
+        found.append(culler.find_visible([crofton.DepthObject(lent, to_clip)], 320, 180))
+    assert (found[0] == found[1]).all()
+
+
 def test_flat_indices_and_floats_give_the_same_clusters():
     positions, indices = wall(9, 1.0)
     expected = crofton.ClusteredMesh(positions, indices)

@@ -127,12 +127,32 @@ crofton_status crofton_clustered_mesh_deserialise(const uint8_t* bytes, size_t c
     });
 }
 
+crofton_status crofton_clustered_mesh_lend(crofton_clustered_mesh* clustered, const crofton_mesh* mesh,
+                                           uint32_t order) {
+    const ExclusiveUse use(clustered, __func__);
+    if (use.failed()) return use.status();
+    CROFTON_CHECK(check_struct(mesh, __func__));
+    CROFTON_CHECK(check_array(mesh->positions, mesh->vertex_count, __func__, 3));
+    CROFTON_CHECK(check_array(mesh->indices, mesh->index_count, __func__));
+    if (order > CROFTON_INDEX_ORDER_ORIGINAL)
+        return report(CROFTON_INVALID_ARGUMENT, __func__, "order is no crofton_index_order");
+    return recover(__func__, [&, function = __func__] {
+        const auto lent =
+            clustered->mesh.lend(std::span(reinterpret_cast<const glm::vec3*>(mesh->positions), mesh->vertex_count),
+                                 std::span(mesh->indices, mesh->index_count), static_cast<depth::IndexOrder>(order));
+        return lent ? CROFTON_OK : report(lent.error(), function);
+    });
+}
+
 crofton_status crofton_clustered_mesh_get(const crofton_clustered_mesh* clustered, crofton_clusters* clusters) {
     const SharedUse use(clustered, __func__);
     if (use.failed()) return use.status();
     CROFTON_CHECK(check_pointer(clusters, __func__));
-    *clusters = to_c_clusters(clustered->mesh);
-    return CROFTON_OK;
+    return recover(__func__, [&] {
+        const std::lock_guard lock(clustered->mutex);
+        *clusters = to_c_clusters(clustered->mesh, clustered->ranges);
+        return CROFTON_OK;
+    });
 }
 
 crofton_status crofton_clustered_mesh_box(const crofton_clustered_mesh* clustered, size_t cluster,

@@ -3,10 +3,13 @@
 #pragma once
 #include <crofton/capi/crofton.h>
 
+#include <crofton/core/memory.hpp>
 #include <crofton/world/world.hpp>
+#include <mutex>
 
 #include <crofton/capi/call.hpp>
 #include <crofton/capi/growing.hpp>
+#include <crofton/capi/clustered_mesh.hpp>
 #include <crofton/capi/shapes.hpp>
 
 struct crofton_world {
@@ -15,6 +18,9 @@ struct crofton_world {
     crofton::World world;
     std::uint64_t serial;  // of its state after an update: unlike any other of the process, and not 0
     crofton::Vector<crofton::capi::SharedShape> shapes{};  // by object, so that they live as long as they are used
+
+    mutable std::mutex mutex{};
+    mutable crofton::Vector<crofton::capi::ClusterRanges> cluster_ranges{};  // by mesh; guarded
 
     // Until the object's index has another shape.
     void keep(std::uint32_t object, const crofton::capi::SharedShape& shape) {

@@ -100,12 +100,19 @@ crofton_status crofton_world_get_mesh(const crofton_world* world, crofton_world_
     if (use.failed()) return use.status();
     CROFTON_CHECK(check_growing(info, __func__));
     CROFTON_CHECK(check_mesh(*world, mesh, __func__));
-    crofton_mesh_info result{};
-    result.occluder_count = world->world.occluders_of(to_handle(mesh)).size();
-    if (const depth::ClusteredMesh* const cut = world->world.clusters_of(to_handle(mesh)))
-        result.clusters = to_c_clusters(*cut);
-    write_growing(result, info);
-    return CROFTON_OK;
+    return recover(__func__, [&] {
+        const MeshHandle handle = to_handle(mesh);
+        crofton_mesh_info result{};
+        result.occluder_count = world->world.occluders_of(handle).size();
+        if (const depth::ClusteredMesh* const cut = world->world.clusters_of(handle)) {
+            const std::lock_guard lock(world->mutex);
+            auto& ranges = world->cluster_ranges;
+            if (ranges.size() <= handle.index) ranges.resize(handle.index + std::size_t{1});
+            result.clusters = to_c_clusters(*cut, ranges[handle.index]);
+        }
+        write_growing(result, info);
+        return CROFTON_OK;
+    });
 }
 
 crofton_status crofton_world_contains_node(const crofton_world* world, crofton_node node, int* contains) {

@@ -307,6 +307,34 @@ TEST_CASE("ground that reaches behind the eye hides what is below it") {
     }
 }
 
+TEST_CASE("an eye within closed meshes that lie about one another lists little more than shows") {
+    DepthCuller culler;
+    std::uint64_t listed = 0, owners = 0;
+    for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+        CAPTURE(seed);
+        oracle::NearMisses random(seed);
+        Scene scene;
+        scene.meshes.emplace_back(ball(static_cast<std::uint32_t>(6 + random.index(12)), random));
+        // In any order: what is nearest may come last.
+        for (int i = 0; i < 30; ++i) {
+            const double size = random.number(2.0, 30.0);
+            const glm::dvec3 middle(random.number(-0.2, 0.2), random.number(-0.2, 0.2), random.number(-0.2, 0.2));
+            const glm::dvec3 axis(random.number(-1, 1), 1.0, random.number(-1, 1));
+            scene.objects.push_back({&scene.meshes[0], placed(size * middle, glm::dvec3(size), axis, size), false});
+        }
+        Camera camera;
+        camera.aspect = 160.0 / 90.0;
+        camera.near_distance = 0.1;
+        if (seed % 4 == 0) camera.projection = Projection::orthographic, camera.height = 6.0;
+        const Checked c = check(scene, camera, 160, 90, seed, culler);
+        CHECK(c.lost == 0);
+        CHECK(c.too_near == 0);
+        listed += c.listed, owners += c.owners;
+    }
+    MESSAGE("listed " << listed << ", owners " << owners);
+    CHECK(listed < 2 * owners);
+}
+
 // Hills whose coordinates lie far from 0 beside hills near 0, before the eye. What is drawn differs from what was cut
 // by `move`.
 template <class Move>

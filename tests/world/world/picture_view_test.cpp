@@ -456,10 +456,80 @@ TEST_SUITE("world/picture_view") {
         description.indices = std::span<const std::uint32_t>(round.indices).first(round.indices.size() - 3);
         CHECK_FALSE(world.add_mesh(description));
 
+        // One that was moved by a little, which its size does not tell.
+        TriangleMesh other = round;
+        std::swap(other.positions[100], other.positions[130]);
+        description.indices = round.indices;
+        description.positions = other.positions;
+        CHECK(error_of(world.add_mesh(description)).message.find("`precut`") != std::string::npos);
+
         REQUIRE(world.set_vertices(mesh, wider.positions));
         (void)world.update();
         const auto recut = depth::ClusteredMesh::cut(wider.positions, wider.indices);
         CHECK(world.clusters_of(mesh)->serialise() == recut->serialise());
+    }
+
+    TEST_CASE("clusters read the World's positions in place, and views are as of the last update all the same") {
+        oracle::NearMisses random(5);
+        TriangleMesh round = ball(14, random);
+        World world;
+        const MeshHandle mesh =
+            world.add_mesh({.positions = round.positions, .indices = round.indices, .clusters = true}).value();
+        (void)world.add({.mesh = mesh, .transform = Transform{glm::dmat3(1.0), {0, 0, -5}}}).value();
+        (void)world.update();
+        const auto memory = [&] {
+            auto cut = depth::ClusteredMesh::cut(round.positions, round.indices).value();
+            REQUIRE(cut.lend(round.positions, round.indices, depth::IndexOrder::original));
+            return cut.memory();
+        };
+        CHECK(world.clusters_of(mesh)->memory() == memory());
+        const auto seen = [&] {
+            ViewResult visible;
+            REQUIRE(world.view({.camera = Camera{}, .picture = depth::PictureView{160, 90}}, visible));
+            std::vector<std::uint64_t> numbers;
+            for (const depth::VisibleCluster& c : visible.triangles())
+                numbers.insert(numbers.end(), {c.object, c.cluster, c.triangles});
+            return numbers;
+        };
+        const auto before = seen();
+        REQUIRE_FALSE(before.empty());
+        for (glm::vec3& p : round.positions) p *= glm::vec3(2.0f, 0.1f, 0.5f);
+        REQUIRE(world.set_vertices(mesh, round.positions));
+        CHECK(seen() == before);
+        (void)world.update();
+        CHECK(seen() != before);
+        CHECK(world.clusters_of(mesh)->memory() == memory());
+        // Many more meshes, so that the World's lists move.
+        for (int i = 0; i < 100; ++i)
+            (void)world.add_mesh({.positions = round.positions, .indices = round.indices, .clusters = true}).value();
+        const auto after = seen();
+        (void)world.update();
+        CHECK(seen() == after);
+    }
+
+    TEST_CASE(
+        "permuted clusters that were lent belong to the permuted mesh, and the World does not read what was lent") {
+        oracle::NearMisses random(6);
+        const TriangleMesh round = ball(14, random);
+        auto precut = depth::ClusteredMesh::cut(round.positions, round.indices).value();
+        TriangleMesh permuted = round;
+        precut.permute(round.indices, permuted.indices);
+        World world;
+        {
+            const TriangleMesh lent = permuted;
+            REQUIRE(precut.lend(lent.positions, lent.indices));
+            MeshDescription description{.positions = round.positions, .indices = round.indices, .clusters = true};
+            description.precut = &precut;
+            CHECK(error_of(world.add_mesh(description)).message.find("`precut`") != std::string::npos);
+            description.indices = permuted.indices;
+            const MeshHandle mesh = world.add_mesh(description).value();
+            (void)world.add({.mesh = mesh, .transform = Transform{glm::dmat3(1.0), {0, 0, -5}}}).value();
+        }
+        precut = {};
+        (void)world.update();
+        ViewResult visible;
+        REQUIRE(world.view({.camera = Camera{}, .picture = depth::PictureView{160, 90}}, visible));
+        CHECK_FALSE(visible.triangles().empty());
     }
 
     TEST_CASE("a light's view refuses the camera's answer once the World has changed, whatever has changed") {

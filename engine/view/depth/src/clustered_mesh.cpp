@@ -13,6 +13,7 @@
 
 #include "adjacency.hpp"
 #include "cut.hpp"
+#include "mesh_packer.hpp"
 #include "oriented_bound.hpp"
 #include "patch.hpp"
 
@@ -49,35 +50,28 @@ Result<void> check(std::span<const glm::vec3> positions, std::span<const std::ui
     return {};
 }
 
-}  // namespace
-
 // Writes the clusters of a mesh one after the other.
 class PatchBuilder {
   public:
-    PatchBuilder(ClusteredMesh& mesh, std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices)
-        : mesh_(mesh), positions_(positions), indices_(indices), patch_(Owner<Patch>::make()) {}
+    PatchBuilder(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices)
+        : positions_(positions), indices_(indices) {}
+
+    Vector<std::uint32_t> order;
+    Vector<glm::vec3> vertices;
+    Vector<std::uint32_t> first_vertices;
+    MeshPacker packer;
 
     // Triangles [begin, end) of the order.
     void add(std::uint32_t begin, std::uint32_t end) {
-        Vector<std::uint32_t>& order = mesh_.order_;
         // Ascending, so that what a cluster lists is drawn in the order of the mesh.
         std::sort(order.begin() + begin, order.begin() + end);
         own_.clear();
         for (std::uint32_t k = begin; k < end; ++k)
             for (std::uint32_t c = 0; c < 3; ++c) own_.push_back(indices_[std::size_t{3} * order[k] + c]);
-        const auto first_vertex = static_cast<std::uint32_t>(mesh_.vertices_.size());
+        first_vertices.push_back(static_cast<std::uint32_t>(vertices.size()));
         weld();
-        const auto vertices = static_cast<std::uint32_t>(mesh_.vertices_.size()) - first_vertex;
-        mesh_.clusters_.push_back({begin, end - begin});
-        mesh_.boxes_.push_back(bound_of(positions_, own_, vertices));
-        mesh_.firsts_.push_back(static_cast<std::uint32_t>(mesh_.corners_.size()));
-        mesh_.first_vertices_.push_back(first_vertex);
-        append_corners(bits_for(vertices));
-        mesh_.corners_.push_back(0);  // read with the last
-        const std::size_t cluster = mesh_.clusters_.size() - 1;
-        (void)PatchReader::read(mesh_, cluster, *patch_);
-        PatchReader::note_twins(mesh_, cluster, *patch_);
-        if (end != indices_.size() / 3) mesh_.corners_.pop_back();
+        packer.add(bound_of(positions_, own_), std::span(corners_).first(own_.size()),
+                   static_cast<std::uint32_t>(vertices.size()) - first_vertices.back());
     }
 
   private:
@@ -91,33 +85,19 @@ class PatchBuilder {
             const std::array<float, 3> place = {p.x + 0.0f, p.y + 0.0f, p.z + 0.0f};
             const std::uint8_t number = numbers_.number_of(std::bit_cast<std::array<std::uint32_t, 3>>(place),
                                                            static_cast<std::uint8_t>(count));
-            if (number == count) ++count, mesh_.vertices_.push_back(p);
+            if (number == count) ++count, vertices.push_back(p);
             corners_[i] = number;
         }
     }
 
-    void append_corners(std::uint32_t bits) {
-        std::uint64_t word = 0;
-        std::uint32_t filled = 0;
-        for (std::size_t i = 0; i < own_.size(); ++i) {
-            word |= std::uint64_t{corners_[i]} << filled;
-            filled += bits;
-            if (filled < 32) continue;
-            mesh_.corners_.push_back(static_cast<std::uint32_t>(word));
-            word >>= 32;
-            filled -= 32;
-        }
-        if (filled != 0) mesh_.corners_.push_back(static_cast<std::uint32_t>(word));
-    }
-
-    ClusteredMesh& mesh_;
     std::span<const glm::vec3> positions_;
     std::span<const std::uint32_t> indices_;
-    Owner<Patch> patch_;
     Vector<std::uint32_t> own_;  // indices of the cluster
     SmallTable<std::array<std::uint32_t, 3>> numbers_;
     std::array<std::uint8_t, 3 * Cluster::kMaxTriangles> corners_;
 };
+
+}  // namespace
 
 Result<ClusteredMesh> ClusteredMesh::cut(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices,
                                          const ClusterOptions& options) {
@@ -126,38 +106,69 @@ Result<ClusteredMesh> ClusteredMesh::cut(std::span<const glm::vec3> positions, s
         options.max_triangles != 0 ? options.max_triangles : cluster_size_for(indices.size() / 3);
     ClusteredMesh mesh;
     Groups groups = cut_into_groups(positions, indices, most);
-    mesh.order_ = std::move(groups.order);
-    mesh.triangle_count_ = mesh.order_.size();
-    for (const std::uint32_t i : indices) mesh.largest_ = (glm::max)(mesh.largest_, glm::abs(positions[i]));
-    mesh.bound_ = aligned_bound_of(positions, indices);
-    PatchBuilder builder(mesh, positions, indices);
+    PatchBuilder builder(positions, indices);
+    builder.order = std::move(groups.order);
     std::uint32_t begin = 0;
     for (const std::uint32_t end : groups.ends) builder.add(std::exchange(begin, end), end);
-    const auto drop_spare = [](auto&... lists) { (crofton::detail::drop_spare(lists), ...); };
-    drop_spare(mesh.clusters_, mesh.boxes_, mesh.firsts_, mesh.corners_, mesh.vertices_, mesh.first_vertices_);
+    mesh.triangle_count_ = begin;
+    builder.packer.pack(mesh);
+    for (const std::uint32_t i : indices) mesh.largest_ = (glm::max)(mesh.largest_, glm::abs(positions[i]));
+    set_bound(positions, indices, mesh.bound_center_, mesh.bound_half_);
+    crofton::detail::drop_spare(builder.vertices);
+    crofton::detail::drop_spare(builder.first_vertices);
+    mesh.own_ =
+        Owner<Own>::make(Own{std::move(builder.order), std::move(builder.vertices), std::move(builder.first_vertices)});
     mesh.identity_ = next_identity();
     return mesh;
 }
 
-Result<void> ClusteredMesh::lend(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices) {
-    if (indices.size() != 3 * triangle_count_)
+ClusteredMesh::ClusteredMesh(const ClusteredMesh& other)
+    : packed_(other.packed_),
+      own_(other.own_ ? Owner<Own>::make(*other.own_) : Owner<Own>()),
+      lent_positions_(other.lent_positions_),
+      lent_indices_(other.lent_indices_),
+      cluster_count_(other.cluster_count_),
+      triangle_count_(other.triangle_count_),
+      corner_words_(other.corner_words_),
+      corner_bits_(other.corner_bits_),
+      bound_center_(other.bound_center_),
+      bound_half_(other.bound_half_),
+      largest_(other.largest_),
+      identity_(other.identity_) {}
+
+ClusteredMesh& ClusteredMesh::operator=(const ClusteredMesh& other) {
+    return *this = ClusteredMesh(other);
+}
+
+Result<void> ClusteredMesh::lend(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices,
+                                 IndexOrder order) {
+    const bool keeps_order = order == IndexOrder::original;
+    if (indices.size() != std::size_t{3} * triangle_count_)
         return fail(ErrorCode::invalid_argument, kNoItem, "clusters: what is lent has another number of triangles");
+    if (keeps_order && triangle_order().size() != triangle_count_)
+        return fail(ErrorCode::invalid_argument, kNoItem,
+                    "clusters: the order of triangles was dropped; lend the indices that permute() wrote");
     for (std::size_t i = 0; i < indices.size(); ++i)
         if (indices[i] >= positions.size())
             return fail(ErrorCode::out_of_range, i, "clusters: an index of what is lent is out of range");
     const auto patch = Owner<Patch>::make();
-    for (std::size_t c = 0; c < clusters_.size(); ++c) {
-        (void)PatchReader::read(*this, c, *patch);
-        for (std::uint32_t t = 0; t < clusters_[c].triangle_count; ++t)
+    std::size_t triangle = 0;
+    for (std::size_t c = 0; c < cluster_count_; ++c) {
+        PatchReader::read(*this, c, *patch);
+        for (std::uint32_t t = 0; t < patch->triangle_count; ++t, ++triangle)
             for (std::uint32_t k = 0; k < 3; ++k) {
-                const std::size_t i = std::size_t{3} * (clusters_[c].first_triangle + t) + k;
+                const std::size_t i = std::size_t{3} * (keeps_order ? own_->order[triangle] : triangle) + k;
                 if (positions[indices[i]] != patch->vertex(patch->corner(t, k)))
                     return fail(ErrorCode::invalid_argument, i,
-                                "clusters: what is lent has a corner elsewhere; lend the indices that permute() wrote");
+                                "clusters: what is lent has a corner elsewhere; lend the indices that permute() wrote, "
+                                "or the original ones as such");
             }
     }
-    lent_positions_ = positions, lent_indices_ = indices;
-    order_ = Vector<std::uint32_t>(), vertices_ = Vector<glm::vec3>(), first_vertices_ = Vector<std::uint32_t>();
+    if (keeps_order)
+        own_->vertices = Vector<glm::vec3>(), own_->first_vertices = Vector<std::uint32_t>();
+    else
+        own_ = Owner<Own>();
+    lent_positions_ = positions.data(), lent_indices_ = indices.data();
     return {};
 }
 
@@ -167,15 +178,17 @@ std::uint64_t ClusteredMesh::next_identity() {
 }
 
 void ClusteredMesh::permute(std::span<const std::uint32_t> indices, std::span<std::uint32_t> to) const {
-    if (order_.empty()) std::copy(indices.begin(), indices.end(), to.begin());
-    for (std::size_t k = 0; k < order_.size(); ++k)
-        std::copy_n(indices.begin() + 3 * static_cast<std::ptrdiff_t>(order_[k]), 3,
+    const std::span<const std::uint32_t> order = triangle_order();
+    if (order.empty()) std::copy(indices.begin(), indices.end(), to.begin());
+    for (std::size_t k = 0; k < order.size(); ++k)
+        std::copy_n(indices.begin() + 3 * static_cast<std::ptrdiff_t>(order[k]), 3,
                     to.begin() + 3 * static_cast<std::ptrdiff_t>(k));
 }
 
 std::size_t ClusteredMesh::memory() const {
     const auto bytes = [](const auto&... lists) { return ((lists.capacity() * sizeof(lists[0])) + ...); };
-    return sizeof(*this) + bytes(order_, clusters_, boxes_, firsts_, corners_, vertices_, first_vertices_);
+    return sizeof(*this) + bytes(packed_) +
+           (own_ ? sizeof(Own) + bytes(own_->order, own_->vertices, own_->first_vertices) : 0);
 }
 
 }  // namespace crofton::depth

@@ -90,6 +90,9 @@ std::size_t first_shown(const Tiles& tiles, const Projection* projections, const
                         std::size_t begin, std::size_t end);
 // Draws the cluster; returns the triangles that may own a sample, as far as the tiles are there.
 std::uint64_t draw_patch(const PictureData& picture, const ObjectData& object, const PatchData& patch);
+// Asks the triangles of a cluster that is unclear, once all is drawn; returns those that may own a sample, as far as
+// the tiles are there, and those of which that is not known.
+std::uint64_t ask_patch(const PictureData& picture, const ObjectData& object, const PatchData& patch);
 // Lowers the floors of a map, row by row of tiles, to the farthest point that a lookup in the triangle's part of each
 // row may have. Returns false if there is none. `width`: of the map, in texels.
 bool mark_rows(const MapTriangle& triangle, std::uint32_t first_row, std::uint32_t last_row, std::uint32_t width,

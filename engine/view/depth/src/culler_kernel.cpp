@@ -68,6 +68,10 @@ std::uint64_t draw(const PictureData& picture, const ObjectData& object, const P
     return PatchDrawer(picture, object, patch).run();
 }
 
+std::uint64_t ask_drawn(const PictureData& picture, const ObjectData& object, const PatchData& patch) {
+    return PatchDrawer(picture, object, patch).ask();
+}
+
 bool mark(const MapTriangle& triangle, std::uint32_t first_row, std::uint32_t last_row, std::uint32_t width,
           float* floors) {
     return mark_triangle(triangle, first_row, last_row, width, floors);
@@ -86,6 +90,7 @@ HWY_EXPORT(project_unpacked);
 HWY_EXPORT(ask);
 HWY_EXPORT(ask_each);
 HWY_EXPORT(draw);
+HWY_EXPORT(ask_drawn);
 HWY_EXPORT(mark);
 
 void project_objects(const PictureData& picture, const DepthObject* objects, std::size_t count, Projection* to) {
@@ -108,6 +113,9 @@ std::size_t first_shown(const Tiles& tiles, const Projection* projections, const
 }
 std::uint64_t draw_patch(const PictureData& picture, const ObjectData& object, const PatchData& patch) {
     return HWY_DYNAMIC_DISPATCH(draw)(picture, object, patch);
+}
+std::uint64_t ask_patch(const PictureData& picture, const ObjectData& object, const PatchData& patch) {
+    return HWY_DYNAMIC_DISPATCH(ask_drawn)(picture, object, patch);
 }
 bool mark_rows(const MapTriangle& triangle, std::uint32_t first_row, std::uint32_t last_row, std::uint32_t width,
                float* floors) {

@@ -137,7 +137,7 @@ struct DepthCuller::State {
             std::swap(found, sorted);
         }
         statistics.clusters_drawn = found.size();
-        for (const VisibleCluster& c : found) statistics.triangles_drawn += cluster_of(c).triangle_count;
+        for (const VisibleCluster& c : found) statistics.triangles_drawn += mesh_of(c.object).triangles_of(c.cluster);
         for (const StripWalk& strip : walked())
             found.insert(found.end(), strip.untested().begin(), strip.untested().end());
         for (const std::uint32_t object : frame.unplaced())
@@ -150,9 +150,6 @@ struct DepthCuller::State {
 
     [[nodiscard]] std::span<const StripWalk> walked() const { return std::span(strips).first(strip_count); }
     [[nodiscard]] const ClusteredMesh& mesh_of(std::uint32_t object) const { return *frame.objects()[object].mesh; }
-    [[nodiscard]] const Cluster& cluster_of(const VisibleCluster& c) const {
-        return mesh_of(c.object).clusters()[c.cluster];
-    }
 
     void count_objects() {
         if (strip_count > 1) looked_into.assign(frame.objects().size(), 0);

@@ -125,12 +125,12 @@ class BoxPacker {
         return false;
     }
 
-    [[nodiscard]] ClusteredMesh::PackedBox packed(std::uint32_t vertices) const {
+    [[nodiscard]] ClusteredMesh::PackedBox packed() const {
         ClusteredMesh::PackedBox box{};
         const auto low_half = [](std::int32_t x) { return static_cast<std::uint32_t>(x) & 0xffff; };
         for (std::size_t i = 0; i < 3; ++i) box.center[i] = static_cast<float>(center_[static_cast<glm::length_t>(i)]);
         for (std::size_t i = 0; i < 9; ++i) box.words[i / 2] |= low_half(edges_[i / 3][i % 3]) << 16 * (i % 2);
-        box.words[4] |= (static_cast<std::uint32_t>(exponent_ + 127) | vertices << 8) << 16;
+        box.words[4] |= static_cast<std::uint32_t>(exponent_ + 127) << 16;
         return box;
     }
 
@@ -174,30 +174,26 @@ glm::dvec3 rounded_center(const Axes& axes, const Extents& extents) {
 
 }  // namespace
 
-ClusteredMesh::PackedBox bound_of(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices,
-                                  std::uint32_t vertices) {
+ClusteredMesh::PackedBox bound_of(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices) {
     const Extents extents = along(kAligned, positions, indices);
     if (Axes turned; find_axes(positions, indices, turned))
         if (const Extents other = along(turned, positions, indices); other.area() < 0.9 * extents.area()) {
             BoxPacker box(positions, indices, rounded_center(turned, other));
-            if (box.set_turned(turned, 0.5 * (other.max - other.min))) return box.packed(vertices);
+            if (box.set_turned(turned, 0.5 * (other.max - other.min))) return box.packed();
         }
     BoxPacker box(positions, indices, rounded_center(kAligned, extents));
     box.set_aligned();
-    return box.packed(vertices);
+    return box.packed();
 }
 
 // Rounding moves a corner by less than 2^-22 of the coordinates' size.
-ClusterBox aligned_bound_of(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices) {
+void set_bound(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices, glm::vec3& center,
+               glm::vec3& half) {
     const Extents extents = along(kAligned, positions, indices);
     const glm::dvec3 size = (glm::max)(glm::abs(extents.min), glm::abs(extents.max));
     const double rounding = 0x1p-21 * (size.x + size.y + size.z);
-    ClusterBox box{glm::vec3(0.5 * (extents.min + extents.max)), {}};
-    for (std::size_t k = 0; k < 3; ++k) {
-        const auto axis = static_cast<glm::length_t>(k);
-        box.half_edges[k][axis] = static_cast<float>(0.5 * (extents.max[axis] - extents.min[axis]) + rounding);
-    }
-    return box;
+    center = glm::vec3(0.5 * (extents.min + extents.max));
+    half = glm::vec3(0.5 * (extents.max - extents.min) + rounding);
 }
 
 }  // namespace crofton::depth

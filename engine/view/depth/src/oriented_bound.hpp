@@ -9,11 +9,12 @@
 namespace crofton::depth {
 
 // Returns the aligned box, or one along the triangles' mean normal where its surface is less. It contains the triangles
-// exactly. `vertices`: their number, which it keeps.
+// exactly.
 [[nodiscard]] ClusteredMesh::PackedBox bound_of(std::span<const glm::vec3> positions,
-                                                std::span<const std::uint32_t> indices, std::uint32_t vertices);
+                                                std::span<const std::uint32_t> indices);
 
 // The aligned box, with its floats' rounding.
-[[nodiscard]] ClusterBox aligned_bound_of(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices);
+void set_bound(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices, glm::vec3& center,
+               glm::vec3& half);
 
 }  // namespace crofton::depth

@@ -50,10 +50,27 @@ class PatchDrawer {
         if (unclear_)
             set_near_faces();
         else
-            set_faces();
+            set_clear_faces();
         for (std::uint64_t left = drawn_; left != 0; left &= left - 1)
             visit(static_cast<std::uint32_t>(std::countr_zero(left)));
         return visible_;
+    }
+
+    // Of a cluster that is unclear: its triangles that are well before the near plane are as others are. Those of the
+    // nearest surface show against it, so it does not matter that it was drawn before.
+    std::uint64_t ask() {
+        PatchUnpacker(patch_).read();
+        float least_w = std::numeric_limits<float>::infinity();
+        const std::uint64_t clear = find_clear(least_w);
+        if (clear == 0) return ~std::uint64_t{0};
+        set_places(least_w);
+        set_faces(least_w - 2.0f * errors_.w);
+        std::uint64_t shown = ~clear;
+        for (std::uint64_t left = clear & drawn_; left != 0; left &= left - 1) {
+            const auto t = static_cast<std::uint32_t>(std::countr_zero(left));
+            if (shows(t)) shown |= bit_of(t);
+        }
+        return shown;
     }
 
   private:
@@ -80,24 +97,55 @@ class PatchDrawer {
         }
     }
 
-    // In pixels: all vertices are in front of the near plane.
-    HWY_INLINE void set_faces() {
+    // In pixels; the vertices that are wanted are at least `least_w` before the eye.
+    HWY_INLINE void set_places(float least_w) {
         const DF d;
         const VF half_width = hn::Set(d, picture_.half_width), half_height = hn::Set(d, picture_.half_height);
         const VF middle_x = hn::Set(d, picture_.middle_x), middle_y = hn::Set(d, picture_.middle_y);
+        const VF least = hn::Set(d, least_w);
         transform([&](const VF(&clip)[4], std::size_t i) {
-            const VF inverse = hn::Div(hn::Set(d, 1.0f), clip[3]);
+            const VF inverse = hn::Div(hn::Set(d, 1.0f), hn::Max(clip[3], least));
             hn::Store(hn::Add(hn::Mul(hn::Mul(clip[0], inverse), half_width), middle_x), d, vertices_.x + i);
             hn::Store(hn::Add(hn::Mul(hn::Mul(clip[1], inverse), half_height), middle_y), d, vertices_.y + i);
             hn::Store(hn::Mul(clip[2], inverse), d, vertices_.z + i);
         });
-        const float w = projection_.least_w - 2.0f * errors_.w;
+    }
+
+    // Of vertices that are surely at least w before the eye.
+    HWY_INLINE void set_faces(float w) {
         const float move = picture_.grid + pixel_error(picture_, errors_, w);
         const FaceSetup setup(picture_, object_, projection_, vertices_, move, errors_.z / w, errors_.w / w);
         for (std::uint32_t b = 0; b * Faces::kCount < patch_.triangle_count; ++b) {
             setup.run(patch_.blocks[b], faces_[b]);
             note(b);
         }
+    }
+
+    // The triangles all of whose corners are before the near plane, and not so near that products move them by more
+    // than those of other clusters; the least w of a corner.
+    HWY_INLINE std::uint64_t find_clear(float& least_w) {
+        const DF d;
+        const float limit = pixel_error(picture_, errors_, kMaxPixelError) + 2.0f * errors_.w;
+        const VF margin = hn::Set(d, 2.0f * (errors_.z + errors_.w)), share = hn::Set(d, picture_.near_share);
+        transform([&](const VF(&clip)[4], std::size_t i) {
+            const auto in_front = hn::Gt(hn::Sub(hn::Mul(share, clip[3]), clip[2]), margin);
+            hn::Store(hn::IfThenElseZero(in_front, clip[3]), d, vertices_.w + i);
+        });
+        std::uint64_t clear = 0;
+        for (std::uint32_t t = 0; t < patch_.triangle_count; ++t) {
+            const auto w = [&](std::size_t k) { return vertices_.w[patch_.corner(t, k)]; };
+            const float least = std::min({w(0), w(1), w(2)});
+            if (!(least > limit)) continue;
+            clear |= bit_of(t);
+            least_w = std::min(least_w, least);
+        }
+        return clear;
+    }
+
+    // All vertices are in front of the near plane.
+    HWY_INLINE void set_clear_faces() {
+        set_places(std::numeric_limits<float>::min());
+        set_faces(projection_.least_w - 2.0f * errors_.w);
     }
 
     void set_near_faces() {

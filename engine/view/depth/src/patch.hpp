@@ -24,10 +24,6 @@ constexpr std::uint32_t padded(std::uint32_t count) {
 constexpr std::uint32_t bits_for(std::uint32_t vertex_count) {
     return vertex_count > 2 ? static_cast<std::uint32_t>(std::bit_width(vertex_count - 1)) : 1;
 }
-// That the corners of a cluster take.
-constexpr std::uint32_t words_for(std::uint32_t vertex_count, std::uint32_t triangle_count) {
-    return (3 * triangle_count * bits_for(vertex_count) + 31) / 32;
-}
 
 // Eight triangles; those beyond the cluster's last have three equal corners and no neighbours.
 struct PatchBlock {
@@ -38,10 +34,12 @@ struct PatchBlock {
 
 struct Patch {
     std::uint32_t vertex_count = 0, triangle_count = 0;
-    const std::uint32_t* corner_words = nullptr;  // as the mesh keeps them; one more may be read
-    const std::uint32_t* indices = nullptr;       // of its triangles; null where its vertices follow one another
+    const std::uint32_t* corner_words = nullptr;  // as the mesh keeps them, from bit first_bit on
+    std::uint32_t first_bit = 0, corner_bits = 1;
+    const std::uint32_t* indices = nullptr;  // of its triangles; null where its vertices follow one another
+    const std::uint32_t* order = nullptr;    // null, or the numbers of its triangles, and `indices` are the mesh's
     const glm::vec3* positions = nullptr;
-    bool has_twins = false;  // PatchReader::kTwins
+    bool has_twins = false;
 
     alignas(64) float coordinates[3][kMaxPatchVertices];  // padded() as the last vertex
     PatchBlock blocks[Cluster::kMaxTriangles / kLanes] = {};
@@ -54,6 +52,11 @@ struct Patch {
     [[nodiscard]] glm::vec3 vertex(std::size_t v) const {
         return {coordinates[0][v], coordinates[1][v], coordinates[2][v]};
     }
+    // Of the vertex with this number, which corner k of the triangle is the first to name.
+    [[nodiscard]] const glm::vec3& position_of(std::uint32_t triangle, std::uint32_t k, std::uint32_t number) const {
+        if (indices == nullptr) return positions[number];
+        return positions[indices[std::size_t{3} * (order != nullptr ? order[triangle] : triangle) + k]];
+    }
     [[nodiscard]] std::uint32_t corner(std::uint32_t triangle, std::size_t k) const {
         return blocks[triangle / kLanes].corners[k][triangle % kLanes];
     }
@@ -62,16 +65,12 @@ struct Patch {
 // Reads clusters of a mesh. The kernels do the same, eight triangles at once (unpack-inl.hpp).
 class PatchReader {
   public:
-    // `firsts_`: this bit is set where two triangles of the cluster have an edge in the same direction, or a triangle
-    // has equal corners.
-    static constexpr std::uint32_t kTwins = std::uint32_t{1} << 31;
-
-    // Sets all but what is listed by vertex, triangle or edge.
+    // Sets all but the number of vertices and what is listed by vertex, triangle or edge.
     static void open(const ClusteredMesh& mesh, std::size_t cluster, Patch& to);
-    // Sets corners and coordinates, too. False if corners name other vertices than the cluster has.
-    static bool read(const ClusteredMesh& mesh, std::size_t cluster, Patch& to);
-    // Sets what is known of twins.
-    static void note_twins(ClusteredMesh& mesh, std::size_t cluster, const Patch& read);
+    // Sets the number of vertices and the corners, too. False if vertices are not numbered as corners name them.
+    static bool read_corners(const ClusteredMesh& mesh, std::size_t cluster, Patch& to);
+    // Sets coordinates, too, of a sound mesh.
+    static void read(const ClusteredMesh& mesh, std::size_t cluster, Patch& to);
 };
 
 }  // namespace crofton::depth

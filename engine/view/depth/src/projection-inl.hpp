@@ -333,7 +333,7 @@ HWY_INLINE void project_some_objects(const PictureData& picture, const DepthObje
     alignas(32) float numbers[9][kTile];
     for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
         const ClusteredMesh& mesh = *objects[std::min(i, count - 1)].mesh;
-        const ClusterBox& bound = mesh.bound();
+        const ClusterBox bound = mesh.bound();
         const glm::vec3 largest = mesh.largest();
         for (glm::length_t k = 0; k < 3; ++k) {
             numbers[k][i] = bound.center[k];

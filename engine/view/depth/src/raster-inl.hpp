@@ -136,7 +136,8 @@ class Rasterizer {
             const VF plane = hn::Add(hn::Set(d, plane_at_row(ty)), across);
             const VF most = hn::Min(hn::Add(plane, reach), nearest);
             // The list is padded by a vector.
-            std::uint32_t left = those & ~simd::HWY_NAMESPACE::mask_bits(d, hn::Gt(hn::LoadU(d, tiles_.least + at), most));
+            std::uint32_t left =
+                those & ~simd::HWY_NAMESPACE::mask_bits(d, hn::Gt(hn::LoadU(d, tiles_.least + at), most));
             if (left != 0) find_band(ty, lines, 3);
             for (; left != 0; left &= left - 1) {
                 const int i = std::countr_zero(left);
@@ -228,7 +229,8 @@ class Rasterizer {
             for (std::size_t row = 0; row < kTile; ++row) {
                 const VF before = written ? hn::Max(hn::Load(d, pixels + row * kTile + i), floor) : floor;
                 const VF most = hn::Min(hn::Add(hn::Add(depth, hn::Set(d, band_.ups[row])), above), nearest);
-                const auto within = hn::And(hn::Ge(x, hn::Set(d, band_.low[row])), hn::Le(x, hn::Set(d, band_.high[row])));
+                const auto within =
+                    hn::And(hn::Ge(x, hn::Set(d, band_.low[row])), hn::Le(x, hn::Set(d, band_.high[row])));
                 shows = hn::Or(shows, hn::And(within, hn::Ge(most, before)));
             }
         }
@@ -304,7 +306,8 @@ class Rasterizer {
         const VF last = hn::Set(d, static_cast<float>(8 * tx) + 7.5f);
         auto meets = hn::FirstN(d, 0);
         for (std::size_t i = 0; i < kTile; i += hn::Lanes(d))
-            meets = hn::Or(meets, hn::And(hn::Le(hn::Load(d, band_.low + i), last), hn::Ge(hn::Load(d, band_.high + i), first)));
+            meets = hn::Or(
+                meets, hn::And(hn::Le(hn::Load(d, band_.low + i), last), hn::Ge(hn::Load(d, band_.high + i), first)));
         return !hn::AllFalse(d, meets);
     }
 
@@ -327,7 +330,8 @@ class Rasterizer {
             for (std::size_t row = 0; row < kTile; ++row) {
                 float* const pixel = pixels + row * kTile + i;
                 const VF before = kFirst ? hn::Set(d, kNothing) : hn::Load(d, pixel);
-                const auto within = hn::And(hn::Ge(x, hn::Set(d, band_.low[row])), hn::Le(x, hn::Set(d, band_.high[row])));
+                const auto within =
+                    hn::And(hn::Ge(x, hn::Set(d, band_.low[row])), hn::Le(x, hn::Set(d, band_.high[row])));
                 const VF outside = hn::IfThenZeroElse(within, hn::Set(d, kNothing));
                 const VF after = hn::Max(hn::Add(hn::Add(depth, hn::Set(d, band_.ups[row])), outside), before);
                 hn::Store(after, d, pixel);

@@ -181,7 +181,7 @@ void ReceiverMask::add_clusters(const ClusteredMesh& mesh, std::span<const Visib
 }
 
 void ReceiverMask::add_triangles(const ClusteredMesh& mesh, const VisibleCluster& cluster) {
-    (void)PatchReader::read(mesh, cluster.cluster, *patch_);
+    PatchReader::read(mesh, cluster.cluster, *patch_);
     for (std::uint64_t left = cluster.triangles; left != 0; left &= left - 1) {
         const auto t = static_cast<std::uint32_t>(std::countr_zero(left));
         Piece& piece = pieces_.emplace_back();

@@ -7,20 +7,22 @@
 #include <crofton/depth/clustered_mesh.hpp>
 #include <cstring>
 #include <numeric>
+#include <utility>
 
+#include "mesh_packer.hpp"
 #include "patch.hpp"
 
 namespace crofton::depth {
 namespace {
 
-// What the bytes begin with. Then: the triangle count of each cluster (a byte, padded to whole words), a PackedBox
-// each, the order of the triangles, their corners, the vertices.
+// What the bytes begin with. Then: the count of each cluster (ClusteredMesh::counts(), padded to whole words), a
+// PackedBox each, the order of the triangles, their corners, the vertices.
 struct StoredHeader {
     std::uint32_t clusters = 0, triangles = 0, corner_words = 0, vertices = 0;
-    glm::vec3 largest{0.0f};
-    ClusterBox bound;
+    std::uint32_t corner_bits = 0;
+    glm::vec3 largest{0.0f}, center{0.0f}, half{0.0f};
 };
-static_assert(sizeof(StoredHeader) == 76 && sizeof(ClusteredMesh::PackedBox) == 32 && sizeof(glm::vec3) == 12);
+static_assert(sizeof(StoredHeader) == 56 && sizeof(ClusteredMesh::PackedBox) == 32 && sizeof(glm::vec3) == 12);
 
 constexpr float kFarthest = 1e16f;  // of a box around positions up to 1e15
 constexpr std::uint32_t kMostTriangles = std::uint32_t{1} << 28;
@@ -43,6 +45,9 @@ Error damaged(const char* what, std::uint64_t cluster = kNoItem) {
 bool is_within(const glm::vec3& v, float limit) {
     return std::abs(v.x) <= limit && std::abs(v.y) <= limit && std::abs(v.z) <= limit;
 }
+bool is_extent(const glm::vec3& v) {
+    return is_within(v, kFarthest) && std::min({v.x, v.y, v.z}) >= 0.0f;
+}
 bool is_box(const ClusterBox& box) {
     return is_within(box.center, kFarthest) && std::all_of(box.half_edges.begin(), box.half_edges.end(),
                                                            [](const glm::vec3& e) { return is_within(e, kFarthest); });
@@ -64,30 +69,6 @@ struct StoredMesh {
         bytes = bytes.subspan(count * sizeof(T));
     }
 
-    // Clusters follow one another in all lists, so their sizes alone are stored.
-    static Result<void> place_clusters(ClusteredMesh& mesh, std::span<const std::uint8_t> triangle_counts) {
-        std::uint64_t triangle = 0, word = 0, vertex = 0;
-        for (std::size_t c = 0; c < mesh.boxes_.size(); ++c) {
-            const std::uint32_t triangles = triangle_counts[c], vertices = mesh.boxes_[c].vertex_count();
-            if (triangles < 1 || triangles > Cluster::kMaxTriangles)
-                return damaged("a cluster's number of triangles is out of range", c);
-            if (vertices < 1 || vertices > 3 * triangles) return damaged("a cluster's vertex count is out of range", c);
-            if (!is_box(mesh.box_of(c))) return damaged("a cluster's box is none", c);
-            mesh.clusters_.push_back({static_cast<std::uint32_t>(triangle), triangles});
-            mesh.firsts_.push_back(static_cast<std::uint32_t>(word));
-            mesh.first_vertices_.push_back(static_cast<std::uint32_t>(vertex));
-            triangle += triangles;
-            word += words_for(vertices, triangles);
-            vertex += vertices;
-            if (triangle > mesh.triangle_count_ || word > mesh.corners_.size() || vertex > mesh.vertices_.size())
-                return damaged("a cluster has more vertices or triangles than there are", c);
-        }
-        // A word follows the last cluster's.
-        if (triangle != mesh.triangle_count_ || word + 1 != mesh.corners_.size() || vertex != mesh.vertices_.size())
-            return damaged("there are more vertices or triangles than clusters have");
-        return {};
-    }
-
     static Result<void> check_order(std::span<const std::uint32_t> order) {
         Vector<bool> seen(order.size(), false);
         for (const std::uint32_t triangle : order) {
@@ -97,13 +78,26 @@ struct StoredMesh {
         return {};
     }
 
-    static Result<void> check_corners(ClusteredMesh& mesh) {
+    // Vertices follow one another as clusters do: their corners tell how many each has, and which have twins.
+    static Result<void> check_clusters(ClusteredMesh& mesh) {
         const auto patch = Owner<Patch>::make();
-        for (std::size_t c = 0; c < mesh.clusters_.size(); ++c) {
-            if (!PatchReader::read(mesh, c, *patch))
+        Vector<std::uint8_t> corners;
+        std::uint64_t vertex = 0;
+        for (std::size_t c = 0; c < mesh.cluster_count_; ++c) {
+            if (!is_box(mesh.box_of(c))) return damaged("a cluster's box is none", c);
+            mesh.own_->first_vertices.push_back(static_cast<std::uint32_t>(vertex));
+            if (!PatchReader::read_corners(mesh, c, *patch))
                 return damaged("a triangle names a vertex that its cluster does not have", c);
-            PatchReader::note_twins(mesh, c, *patch);
+            vertex += patch->vertex_count;
+            if (vertex > mesh.own_->vertices.size()) return damaged("a cluster has more vertices than there are", c);
+            corners.clear();
+            for (std::uint32_t t = 0; t < patch->triangle_count; ++t)
+                for (std::uint32_t k = 0; k < 3; ++k) corners.push_back(static_cast<std::uint8_t>(patch->corner(t, k)));
+            MeshPacker::set_twins(const_cast<ClusteredMesh::PackedBox&>(mesh.boxes()[c]),
+                                  MeshPacker::has_twins(corners));
         }
+        if (vertex != mesh.own_->vertices.size()) return damaged("there are more vertices than clusters have");
+        crofton::detail::drop_spare(mesh.own_->first_vertices);
         return {};
     }
 
@@ -114,36 +108,50 @@ struct StoredMesh {
                            [limit](const glm::vec3& v) { return is_within(v, limit); });
     }
 
-    static Vector<glm::vec3> vertices_of(const ClusteredMesh& mesh) {
+    // Of what is lent in order, that order.
+    static Vector<std::uint32_t> order_of(const ClusteredMesh& mesh) {
+        if (mesh.own_) return mesh.own_->order;
+        Vector<std::uint32_t> order(mesh.triangle_count_);
+        std::iota(order.begin(), order.end(), 0u);
+        return order;
+    }
+
+    static Vector<glm::vec3> vertices_of(const ClusteredMesh& mesh, Vector<std::uint32_t>& firsts) {
         Vector<glm::vec3> vertices;
         const auto patch = Owner<Patch>::make();
-        for (std::size_t c = 0; c < mesh.clusters_.size(); ++c) {
-            (void)PatchReader::read(mesh, c, *patch);
+        for (std::size_t c = 0; c < mesh.cluster_count_; ++c) {
+            PatchReader::read(mesh, c, *patch);
+            firsts.push_back(static_cast<std::uint32_t>(vertices.size()));
             for (std::uint32_t v = 0; v < patch->vertex_count; ++v) vertices.push_back(patch->vertex(v));
         }
         return vertices;
     }
 };
 
+void ClusteredMesh::keep_copy() {
+    if (lent_indices_ == nullptr) return;
+    auto own = Owner<Own>::make();
+    own->vertices = StoredMesh::vertices_of(*this, own->first_vertices);
+    own->order = StoredMesh::order_of(*this);
+    own_ = std::move(own);
+    lent_positions_ = nullptr, lent_indices_ = nullptr;
+}
+
 Vector<std::byte> ClusteredMesh::serialise() const {
-    const Vector<glm::vec3> vertices = StoredMesh::vertices_of(*this);
-    const StoredHeader header{static_cast<std::uint32_t>(clusters_.size()),
-                              static_cast<std::uint32_t>(triangle_count_),
-                              static_cast<std::uint32_t>(corners_.size()),
-                              static_cast<std::uint32_t>(vertices.size()),
-                              largest_,
-                              bound_};
-    Vector<std::uint32_t> in_order(order_.empty() ? triangle_count_ : 0);
-    std::iota(in_order.begin(), in_order.end(), 0u);
-    const std::span<const std::uint32_t> order = order_.empty() ? std::span(in_order) : triangle_order();
+    Vector<std::uint32_t> first_vertices;
+    const Vector<glm::vec3> vertices = StoredMesh::vertices_of(*this, first_vertices);
+    const Vector<std::uint32_t> order = StoredMesh::order_of(*this);
+    const StoredHeader header{
+        cluster_count_, triangle_count_, corner_words_, static_cast<std::uint32_t>(vertices.size()),
+        corner_bits_,   largest_,        bound_center_, bound_half_};
     Vector<std::byte> bytes;
     bytes.reserve(static_cast<std::size_t>(size_for(header)));
     append(bytes, &header, sizeof header);
-    for (const Cluster& cluster : clusters_) bytes.push_back(static_cast<std::byte>(cluster.triangle_count));
+    append(bytes, counts(), cluster_count_);
     bytes.resize(static_cast<std::size_t>(whole_words(bytes.size())));
-    append(bytes, boxes_.data(), boxes_.size() * sizeof(PackedBox));
-    append(bytes, order.data(), order.size_bytes());
-    append(bytes, corners_.data(), corners_.size() * sizeof(std::uint32_t));
+    append(bytes, boxes().data(), boxes().size_bytes());
+    append(bytes, order.data(), order.size() * sizeof(std::uint32_t));
+    append(bytes, corner_words(), corner_words_ * sizeof(std::uint32_t));
     append(bytes, vertices.data(), vertices.size() * sizeof(glm::vec3));
     return bytes;
 }
@@ -154,26 +162,34 @@ Result<ClusteredMesh> ClusteredMesh::deserialise(std::span<const std::byte> byte
     std::memcpy(&header, bytes.data(), sizeof header);
     if (bytes.size() != size_for(header)) return damaged("the bytes are not as many as their header says");
     if (header.clusters == 0 || header.triangles > kMostTriangles) return damaged("a count is out of range");
-    if (!is_box(header.bound) || !is_within(header.largest, kFarthest) ||
-        std::min({header.largest.x, header.largest.y, header.largest.z}) < 0.0f)
+    // Of the widest cluster; others take up to 3 bits less.
+    if (header.corner_bits < 1 || header.corner_bits > 8) return damaged("a corner's number of bits is out of range");
+    if (!is_within(header.center, kFarthest) || !is_extent(header.half) || !is_extent(header.largest))
         return damaged("the mesh's box is none");
     bytes = bytes.subspan(sizeof header);
     ClusteredMesh mesh;
     mesh.largest_ = header.largest;
-    mesh.bound_ = header.bound;
+    mesh.bound_center_ = header.center, mesh.bound_half_ = header.half;
     mesh.triangle_count_ = header.triangles;
-    Vector<std::uint8_t> triangle_counts;
-    StoredMesh::take(bytes, static_cast<std::size_t>(whole_words(header.clusters)), triangle_counts);
-    StoredMesh::take(bytes, header.clusters, mesh.boxes_);
-    StoredMesh::take(bytes, header.triangles, mesh.order_);
-    StoredMesh::take(bytes, header.corner_words, mesh.corners_);
-    StoredMesh::take(bytes, header.vertices, mesh.vertices_);
-    if (auto placed = StoredMesh::place_clusters(mesh, triangle_counts); !placed) return placed.error();
-    if (auto checked = StoredMesh::check_order(mesh.order_); !checked) return checked.error();
-    if (auto checked = StoredMesh::check_corners(mesh); !checked) return checked.error();
-    if (!StoredMesh::are_within(mesh.vertices_, mesh.largest_)) return damaged("a coordinate is beyond the mesh's");
-    for (auto* list : {&mesh.firsts_, &mesh.first_vertices_}) crofton::detail::drop_spare(*list);
-    crofton::detail::drop_spare(mesh.clusters_);
+    mesh.corner_bits_ = header.corner_bits;
+    mesh.own_ = Owner<Own>::make();
+    Vector<std::uint8_t> counts;
+    Vector<PackedBox> boxes;
+    Vector<std::uint32_t> words;
+    StoredMesh::take(bytes, static_cast<std::size_t>(whole_words(header.clusters)), counts);
+    StoredMesh::take(bytes, header.clusters, boxes);
+    StoredMesh::take(bytes, header.triangles, mesh.own_->order);
+    StoredMesh::take(bytes, header.corner_words, words);
+    StoredMesh::take(bytes, header.vertices, mesh.own_->vertices);
+    counts.resize(header.clusters);
+    for (std::size_t c = 0; c < counts.size(); ++c)
+        if (counts[c] >> 6 >= header.corner_bits) return damaged("a corner's number of bits is out of range", c);
+    if (!MeshPacker::set_lists(mesh, words, boxes, counts))
+        return damaged("there are not as many triangles or corners as clusters have");
+    if (auto checked = StoredMesh::check_order(mesh.own_->order); !checked) return checked.error();
+    if (auto checked = StoredMesh::check_clusters(mesh); !checked) return checked.error();
+    if (!StoredMesh::are_within(mesh.own_->vertices, mesh.largest_))
+        return damaged("a coordinate is beyond the mesh's");
     mesh.identity_ = next_identity();
     return mesh;
 }

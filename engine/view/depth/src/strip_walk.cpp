@@ -15,6 +15,7 @@ void StripWalk::run(const DepthFrame& frame, std::uint32_t first_column, std::ui
         walk_bin(bin_);
         if (!whole_ && is_exceeded()) return;
     }
+    ask_unclear();
 }
 
 void StripWalk::begin(std::uint32_t first_column, std::uint32_t end_column) {
@@ -40,6 +41,7 @@ void StripWalk::begin(std::uint32_t first_column, std::uint32_t end_column) {
     first_.fill(kEnd);
     items_.clear();
     clusters_.clear();
+    unclear_.clear();
     asked_.clear();
     untested_.clear();
 }
@@ -118,7 +120,20 @@ void StripWalk::draw(std::uint32_t object, std::uint32_t cluster, const ClusterB
     PatchReader::open(*frame_->objects()[object].mesh, cluster, *patch_);
     count(patch_->triangle_count, projection);
     const PatchData data{*patch_, bound, projection};
+    if (projection.is_unclear()) unclear_.push_back({clusters_.size(), projection});
     clusters_.push_back({object, cluster, draw_patch(picture_, frame_->data_of(object), data)});
+}
+
+// Clusters that reach the near plane come first, with all triangles that may be in the picture: nothing is known then
+// of what is in front of them.
+void StripWalk::ask_unclear() {
+    for (const Unclear& unclear : unclear_) {
+        VisibleCluster& found = clusters_[unclear.place];
+        const ClusteredMesh& mesh = *frame_->objects()[found.object].mesh;
+        PatchReader::open(mesh, found.cluster, *patch_);
+        const ClusterBox bound = mesh.clusters().size() > 1 ? mesh.box_of(found.cluster) : mesh.bound();
+        found.triangles &= ask_patch(picture_, frame_->data_of(found.object), {*patch_, bound, unclear.projection});
+    }
 }
 
 void StripWalk::list_whole(std::uint32_t object, std::uint32_t cluster) {

@@ -29,7 +29,7 @@ struct SharedWork {
 
 // A cluster with all its triangles.
 [[nodiscard]] inline VisibleCluster all_of(const ClusteredMesh& mesh, std::uint32_t object, std::uint32_t cluster) {
-    return {object, cluster, ~std::uint64_t{0} >> (64 - mesh.clusters()[cluster].triangle_count)};
+    return {object, cluster, ~std::uint64_t{0} >> (64 - mesh.triangles_of(cluster))};
 }
 
 class StripWalk {
@@ -75,6 +75,7 @@ class StripWalk {
     void push(const Item& item);
     // `bound`: what `projection` is of.
     void draw(std::uint32_t object, std::uint32_t cluster, const ClusterBox& bound, const Projection& projection);
+    void ask_unclear();
     void list_whole(std::uint32_t object, std::uint32_t cluster);
     // Counts what is done for a box in one of the strips.
     void count(std::uint64_t work, const Projection& box);
@@ -93,7 +94,12 @@ class StripWalk {
     Vector<Item> items_;
     Vector<Projection> projections_;  // of the clusters of one object
     Owner<Patch> patch_;              // the cluster that is drawn
+    struct Unclear {
+        std::size_t place;  // in clusters_
+        Projection projection;
+    };
     Vector<VisibleCluster> clusters_, untested_;
+    Vector<Unclear> unclear_;
     Vector<std::uint32_t> asked_;
 };
 

@@ -29,14 +29,12 @@ class PatchUnpacker {
 
     // As PatchReader::read(), of an opened patch of a sound mesh; coordinates are padded.
     HWY_INLINE void read() {
-        // One more is written for corners that come after all vertices.
-        std::uint8_t places[kMaxPatchVertices + 1];  // of the corner with which each vertex comes
-        read_corners(places);
+        read_corners();
         const std::uint32_t count = p_.vertex_count;
         if (p_.indices == nullptr)
             for (std::uint32_t v = 0; v < count; ++v) set_vertex(v, p_.positions[v]);
         else
-            for (std::uint32_t v = 0; v < count; ++v) set_vertex(v, p_.positions[p_.indices[places[v]]]);
+            read_lent();
         for (std::uint32_t v = count; v < padded(count); ++v) set_vertex(v, p_.vertex(v - 1));
     }
 
@@ -83,32 +81,65 @@ class PatchUnpacker {
         p_.coordinates[0][v] = p.x, p_.coordinates[1][v] = p.y, p_.coordinates[2][v] = p.z;
     }
 
-    // A corner with a new number is the first of its vertex.
-    HWY_INLINE void read_corners(std::uint8_t* places) {
-        alignas(64) std::uint32_t triples[Cluster::kMaxTriangles] = {};  // a byte a corner
-        const std::uint32_t bits = bits_for(p_.vertex_count), mask = (1u << bits) - 1;
-        std::uint32_t named = 0;
-        for (std::uint32_t t = 0, at = 0; t < p_.triangle_count; ++t, at += 3 * bits) {
-            const std::uint32_t* const words = p_.corner_words + at / 32;
-            const auto left = static_cast<std::uint32_t>((words[0] | std::uint64_t{words[1]} << 32) >> at % 32);
-            const std::uint32_t a = left & mask, b = left >> bits & mask, c = left >> 2 * bits & mask;
-            triples[t] = a | b << 8 | c << 16;
-            places[named] = static_cast<std::uint8_t>(3 * t);
-            named += a == named;
-            places[named] = static_cast<std::uint8_t>(3 * t + 1);
-            named += b == named;
-            places[named] = static_cast<std::uint8_t>(3 * t + 2);
-            named += c == named;
-        }
+    using VU = hn::Vec<hn::RebindToUnsigned<DI>>;
+
+    // The bits from `first` on, of the words that the corners begin with; 3 · corner_bits more of them in each lane.
+    [[nodiscard]] HWY_INLINE VU corner_bits_from(std::uint32_t first) const {
         const hn::RebindToUnsigned<DI> d;
+        const std::uint32_t* const words = p_.corner_words + first / 32;
+#if HWY_TARGET == HWY_SCALAR
+        return hn::Set(d, static_cast<std::uint32_t>((words[0] | std::uint64_t{words[1]} << 32) >> first % 32));
+#else
+        // Eight lanes reach 31 + 8 · 24 bits, which are seven words, and four lanes 31 + 4 · 24, which are four.
+        const VU at = hn::Add(hn::Mul(numbers(), hn::Set(d, 3 * p_.corner_bits)), hn::Set(d, first % 32));
+        const VU word = hn::ShiftRight<5>(at), bit = hn::And(at, hn::Set(d, 31u));
+        const VU next = hn::Min(hn::Add(word, hn::Set(d, 1u)), hn::Set(d, lanes() - 1));
+        const VU all = hn::LoadU(d, words);
+        const VU low = hn::TableLookupLanes(all, hn::IndicesFromVec(d, word));
+        const VU high = hn::TableLookupLanes(all, hn::IndicesFromVec(d, next));
+        return hn::Or(hn::Shr(low, bit), hn::Shl(hn::Add(high, high), hn::Sub(hn::Set(d, 31u), bit)));
+#endif
+    }
+    [[nodiscard]] static HWY_INLINE VU numbers() {
+        alignas(32) static constexpr std::uint32_t kNumbers[kLanes] = {0, 1, 2, 3, 4, 5, 6, 7};
+        return hn::Load(hn::RebindToUnsigned<DI>(), kNumbers);
+    }
+
+    HWY_INLINE void read_corners() {
+        const hn::RebindToUnsigned<DI> d;
+        const auto bits = static_cast<int>(p_.corner_bits);
+        const VU mask = hn::Set(d, (1u << bits) - 1);
+        VU most = hn::Zero(d);
         for (std::uint32_t t = 0; t < padded(p_.triangle_count); t += lanes()) {
-            const auto three = hn::Load(d, triples + t);
-            PatchBlock& block = p_.blocks[t / kLanes];
-            hn::StoreU(hn::U8FromU32(hn::And(three, hn::Set(d, 0xffu))), Bytes(), block.corners[0] + t % kLanes);
-            hn::StoreU(hn::U8FromU32(hn::And(hn::ShiftRight<8>(three), hn::Set(d, 0xffu))), Bytes(),
-                       block.corners[1] + t % kLanes);
-            hn::StoreU(hn::U8FromU32(hn::ShiftRight<16>(three)), Bytes(), block.corners[2] + t % kLanes);
+            VU corners[3] = {corner_bits_from(p_.first_bit + t * 3 * p_.corner_bits)};
+            corners[1] = hn::ShiftRightSame(corners[0], bits), corners[2] = hn::ShiftRightSame(corners[1], bits);
+            const auto real = hn::Lt(hn::Add(numbers(), hn::Set(d, t)), hn::Set(d, p_.triangle_count));
+            for (std::uint32_t k = 0; k < 3; ++k) {
+                corners[k] = hn::IfThenElseZero(real, hn::And(corners[k], mask));
+                most = hn::Max(most, corners[k]);
+                hn::StoreU(hn::U8FromU32(corners[k]), Bytes(), p_.blocks[t / kLanes].corners[k] + t % kLanes);
+            }
+            hn::Store(hn::Or(corners[0], hn::Or(hn::ShiftLeft<8>(corners[1]), hn::ShiftLeft<16>(corners[2]))), d,
+                      triples_ + t);
         }
+        p_.vertex_count = hn::GetLane(hn::MaxOfLanes(d, most)) + 1;
+    }
+
+    // A vertex is where the first corner of it is: the last that is written here.
+    HWY_INLINE void read_lent() {
+        std::uint8_t places[kMaxPatchVertices];
+        for (std::uint32_t t = p_.triangle_count; t-- > 0;) {
+            const std::uint32_t corners = triples_[t];
+            places[corners >> 16] = static_cast<std::uint8_t>(3 * t + 2);
+            places[corners >> 8 & 0xff] = static_cast<std::uint8_t>(3 * t + 1);
+            places[corners & 0xff] = static_cast<std::uint8_t>(3 * t);
+        }
+        const std::uint32_t count = p_.vertex_count;
+        if (p_.order == nullptr)
+            for (std::uint32_t v = 0; v < count; ++v) set_vertex(v, p_.positions[p_.indices[places[v]]]);
+        else
+            for (std::uint32_t v = 0; v < count; ++v)
+                set_vertex(v, p_.positions[p_.indices[std::size_t{3} * p_.order[places[v] / 3] + places[v] % 3]]);
     }
 
     void find_neighbors_of_any() {
@@ -123,6 +154,7 @@ class PatchUnpacker {
     }
 
     Patch& p_;
+    alignas(64) std::uint32_t triples_[Cluster::kMaxTriangles];  // the corners of each triangle, a byte each
 };
 
 }  // namespace crofton::depth::HWY_NAMESPACE

@@ -65,7 +65,7 @@ Result<MeshHandle> World::add_mesh(const MeshDescription& description) {
         (void)s.scene.remove_mesh(*mesh);
         return clusters.error();
     }
-    s.mesh_clusters.set(*mesh, std::move(*clusters), s.scene.mesh_revision(*mesh));
+    s.mesh_clusters.set(*mesh, std::move(*clusters), s.scene);
     s.shapes.set_mesh(*mesh, description.triangles);
     s.meshes.add(*mesh);
     return MeshHandle{*mesh, s.meshes.generations[*mesh]};
@@ -87,7 +87,7 @@ Result<void> World::replace_mesh(MeshHandle mesh, const MeshDescription& descrip
     auto replaced = state_->scene.replace_mesh(mesh.index, std::move(replacement), description.box);
     if (!replaced) return replaced;
     state_->note_removal();
-    state_->mesh_clusters.set(mesh.index, std::move(*clusters), state_->scene.mesh_revision(mesh.index));
+    state_->mesh_clusters.set(mesh.index, std::move(*clusters), state_->scene);
     state_->shapes.set_mesh(mesh.index, description.triangles);
     return state_->occluders.set(mesh.index, found.occluders);
 }
@@ -102,6 +102,7 @@ Result<void> World::set_vertices(MeshHandle mesh, PointsView positions) {
                      "; replace_mesh takes any number"});
     s.vertices.resize(positions.size());
     for (std::size_t i = 0; i < positions.size(); ++i) s.vertices[i] = positions[i];
+    s.mesh_clusters.keep_copy(mesh.index);
     auto set = s.scene.set_vertices(mesh.index, s.vertices);
     if (!set) return set;
     s.shapes.note_deformed(mesh.index);

@@ -1,41 +1,42 @@
 // SPDX-License-Identifier: MIT
 #include "mesh_clusters.hpp"
 
-#include <glm/common.hpp>
 #include <utility>
 
+#include "require_ok.hpp"
+
 namespace crofton::world {
-
-namespace {
-
-// Whether the clusters have this mesh's triangles, as far as their number and the largest coordinates tell.
-bool fits(const depth::ClusteredMesh& cut, const TriangleMesh& mesh) {
-    if (cut.triangle_count() != mesh.triangle_count()) return false;
-    glm::vec3 largest(0.0f);
-    for (const std::uint32_t i : mesh.indices) largest = (glm::max)(largest, glm::abs(mesh.positions[i]));
-    return largest == cut.largest();
-}
-
-}  // namespace
 
 Result<MeshClusters::Mesh> MeshClusters::cut(const TriangleMesh& triangles, const MeshDescription& description) {
     if (!description.clusters) return Mesh{};
     if (description.precut != nullptr) {
-        if (!fits(*description.precut, triangles))
+        Mesh given{*description.precut, 0, true, description.one_sided, true};
+        if (!lend(given, triangles))
             return fail(ErrorCode::invalid_argument, kNoItem,
                         "mesh: `precut` is of another mesh; pass the clusters of this one, or nullptr");
-        return Mesh{*description.precut, 0, true, description.one_sided, true};
+        return given;
     }
     auto cut = depth::ClusteredMesh::cut(triangles.positions, triangles.indices);
     if (!cut) return cut.error();
     return Mesh{std::move(*cut), 0, true, description.one_sided, true};
 }
 
-void MeshClusters::set(scene::MeshId mesh, Mesh cut, std::uint64_t revision) {
+Result<void> MeshClusters::lend(Mesh& cut, const TriangleMesh& triangles) {
+    if (!cut.usable) return {};
+    const auto order = cut.cut.triangle_order().empty() ? depth::IndexOrder::permuted : depth::IndexOrder::original;
+    return cut.cut.lend(triangles.positions, triangles.indices, order);
+}
+
+void MeshClusters::set(scene::MeshId mesh, Mesh cut, const scene::Scene& scene) {
     if (!cut.wanted) return clear(mesh);
     if (mesh >= meshes_.size()) meshes_.resize(mesh + std::size_t{1});
     meshes_[mesh] = std::move(cut);
-    meshes_[mesh].revision = revision;
+    meshes_[mesh].revision = scene.mesh_revision(mesh);
+    require_ok(lend(meshes_[mesh], scene.mesh(mesh)));
+}
+
+void MeshClusters::keep_copy(scene::MeshId mesh) {
+    if (mesh < meshes_.size()) meshes_[mesh].cut.keep_copy();
 }
 
 void MeshClusters::clear(scene::MeshId mesh) {
@@ -55,6 +56,7 @@ bool MeshClusters::update(const scene::Scene& scene) {
         auto cut = depth::ClusteredMesh::cut(scene.mesh(id).positions, scene.mesh(id).indices);
         mesh.usable = cut.has_value();
         if (cut) mesh.cut = std::move(*cut);
+        require_ok(lend(mesh, scene.mesh(id)));
         changed = true;
     }
     return changed;

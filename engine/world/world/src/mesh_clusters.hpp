@@ -16,13 +16,18 @@ class MeshClusters {
         bool usable = false;  // false: not wanted, or what it deformed into cannot be cut
     };
 
+    // Reads positions of these arrays, and of no others, from now on. Errors: as ClusteredMesh::lend.
+    static Result<void> lend(Mesh& cut, const TriangleMesh& triangles);
+
     // As the description wants it. Errors: as ClusteredMesh::cut.
     [[nodiscard]] static Result<Mesh> cut(const TriangleMesh& triangles, const MeshDescription& description);
 
-    // The mesh is new or another, and has this revision.
-    void set(scene::MeshId mesh, Mesh cut, std::uint64_t revision);
+    // The mesh is new or another. Its arrays are read in place.
+    void set(scene::MeshId mesh, Mesh cut, const scene::Scene& scene);
     void clear(scene::MeshId mesh);
     [[nodiscard]] Mesh take(scene::MeshId mesh);  // the mesh has none then
+    // The mesh's positions are about to change: until the next update() views see it as it is.
+    void keep_copy(scene::MeshId mesh);
     // Cuts what has changed since. Returns whether anything has.
     bool update(const scene::Scene& scene);
 

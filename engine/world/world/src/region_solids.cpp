@@ -135,6 +135,11 @@ void RegionSolids::finish(RegionData& data, std::size_t item_count, Executor& ex
         const std::span<const occlude::FoundOccluder> occluders = s.occluders.occluders_of(id);
         data.meshes[m].occluders.assign(occluders.begin(), occluders.end());
         data.meshes[m].clusters = s.mesh_clusters.take(id);
+        // It reads the arrays of a World that goes.
+        if (wants_triangles_[m])
+            require_ok(MeshClusters::lend(data.meshes[m].clusters, data.meshes[m].triangles));
+        else
+            data.meshes[m].clusters.cut.keep_copy();
     }
     detail::recoverable_for(executor, data.meshes.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
         for (std::size_t m = begin; m < end; ++m)

@@ -37,7 +37,13 @@ typedef struct crofton_cluster_box {
     float half_edges[9]; /* half_edges[3 k + i] is component i of edge k; center +- each edge gives the corners */
 } crofton_cluster_box;
 
-typedef struct crofton_clustered_mesh crofton_clustered_mesh; /* a mesh cut into clusters; it never changes */
+typedef struct crofton_clustered_mesh crofton_clustered_mesh; /* a mesh cut into clusters */
+
+/* In which order indices that are lent to a clustered mesh have the triangles. */
+typedef enum crofton_index_order {
+    CROFTON_INDEX_ORDER_PERMUTED = 0, /* as crofton_permute_triangles writes them */
+    CROFTON_INDEX_ORDER_ORIGINAL = 1  /* as the mesh that was cut has them */
+} crofton_index_order;
 
 /* A mesh cut into clusters. The k-th triangle of the order is triangle triangle_order[k] of the given mesh. */
 typedef struct crofton_clusters {

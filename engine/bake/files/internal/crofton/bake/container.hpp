@@ -36,7 +36,7 @@ struct Section {
 static_assert(sizeof(Header) == 64 && sizeof(Section) == 40);
 
 inline constexpr std::uint32_t kVersion = 1;          // of the container
-inline constexpr std::uint32_t kClustersVersion = 1;  // of its section: changes with ClusteredMesh::serialise
+inline constexpr std::uint32_t kClustersVersion = 2;  // of its section: changes with ClusteredMesh::serialise
 inline constexpr std::size_t kAlignment = 64;
 inline constexpr std::uint32_t kMaxSections = 64;
 

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <iterator>
 #include <span>
 
 namespace crofton::depth {
@@ -33,11 +34,24 @@ struct ClusterOptions {
     std::uint32_t max_triangles = 0;
 };
 
+// In which order indices that are lent have the triangles.
+enum class IndexOrder : std::uint8_t {
+    permuted,  // as ClusteredMesh::permute() writes them
+    original,  // as the mesh that was cut has them
+};
+
 // A mesh as DepthCuller reads it: its clusters, and which triangles share vertices. Copies the positions, until lend()
 // makes it read the caller's; the caller's index buffer is permuted by triangle_order(), so that each cluster is one
 // range of it.
 class ClusteredMesh {
   public:
+    ClusteredMesh() = default;
+    ClusteredMesh(const ClusteredMesh& other);
+    ClusteredMesh& operator=(const ClusteredMesh& other);
+    ClusteredMesh(ClusteredMesh&&) noexcept = default;
+    ClusteredMesh& operator=(ClusteredMesh&&) noexcept = default;
+    ~ClusteredMesh() = default;
+
     // Cuts by expected cost: each cut minimises Σ (triangles in whole clusters) × (surface area of their box), by
     // Cauchy's formula the expected number of triangles that random views have to pass. Takes O(n log n) time.
     //
@@ -49,25 +63,74 @@ class ClusteredMesh {
                                                    std::span<const std::uint32_t> indices,
                                                    const ClusterOptions& options = {});
 
-    // Reads positions from the caller's arrays from now on, and drops its copies and the order of triangles: it then
-    // needs a tenth to a fifth of the arrays' memory. `indices` are those of permute(), or name vertices at the same
-    // places. The arrays must outlive this object and its copies, and stay as they are.
+    // Reads positions from the caller's arrays from now on, and drops its copies: it then needs a tenth to a seventh of
+    // the arrays' memory. The arrays must outlive this object and its copies, and stay as they are: a change of them is
+    // not noticed, and views are then wrong. With permuted indices, or such that name vertices at the same places, the
+    // order of triangles is dropped, too; with the original ones it is kept.
     //
     // Errors: an index out of range (item = index), or a corner elsewhere than in the mesh that was cut (item = index);
-    // another number of indices. The object is then as it was.
-    [[nodiscard]] Result<void> lend(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices);
+    // another number of indices; original indices after the order was dropped. The object is then as it was.
+    [[nodiscard]] Result<void> lend(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices,
+                                    IndexOrder order = IndexOrder::permuted);
 
-    // Triangle k of the permuted mesh is triangle triangle_order()[k] of the mesh that was given. Empty after lend().
-    [[nodiscard]] std::span<const std::uint32_t> triangle_order() const { return {order_.data(), order_.size()}; }
+    // Copies the positions that are lent, which are then not read any more. Call it before they change or go.
+    void keep_copy();
+
+    // Triangle k of the permuted mesh is triangle triangle_order()[k] of the mesh that was given. Empty after
+    // permuted indices were lent.
+    [[nodiscard]] std::span<const std::uint32_t> triangle_order() const {
+        return own_ ? std::span<const std::uint32_t>(own_->order) : std::span<const std::uint32_t>();
+    }
     // Writes the triangles of `indices`, three numbers each, in that order to `to`. Requires as many of both as were
-    // cut. After lend(), what was lent is in order, and `to` becomes `indices`.
+    // cut. Without an order, `to` becomes `indices`.
     void permute(std::span<const std::uint32_t> indices, std::span<std::uint32_t> to) const;
 
-    [[nodiscard]] std::span<const Cluster> clusters() const { return {clusters_.data(), clusters_.size()}; }
+    // The ranges of the clusters, in their order. Each is found when it is asked for, from those of up to 15 others.
+    class Clusters {
+      public:
+        [[nodiscard]] std::size_t size() const { return mesh_->cluster_count_; }
+        [[nodiscard]] bool empty() const { return size() == 0; }
+        [[nodiscard]] Cluster operator[](std::size_t cluster) const {
+            const Place place = mesh_->place_of(cluster);
+            return {place.first_triangle, mesh_->triangles_of(cluster)};
+        }
+
+        class Iterator {
+          public:
+            using iterator_category = std::input_iterator_tag;
+            using value_type = Cluster;
+            using difference_type = std::ptrdiff_t;
+            using pointer = void;
+            using reference = Cluster;
+            Iterator(const ClusteredMesh* mesh, std::size_t at) : mesh_(mesh), at_(at) {}
+            [[nodiscard]] Cluster operator*() const { return mesh_->clusters()[at_]; }
+            Iterator& operator++() {
+                ++at_;
+                return *this;
+            }
+            [[nodiscard]] bool operator==(const Iterator& other) const { return at_ == other.at_; }
+
+          private:
+            const ClusteredMesh* mesh_;
+            std::size_t at_;
+        };
+        [[nodiscard]] Iterator begin() const { return {mesh_, 0}; }
+        [[nodiscard]] Iterator end() const { return {mesh_, size()}; }
+
+      private:
+        friend class ClusteredMesh;
+        explicit Clusters(const ClusteredMesh* mesh) : mesh_(mesh) {}
+        const ClusteredMesh* mesh_;
+    };
+    [[nodiscard]] Clusters clusters() const { return Clusters(this); }
+    // Of a cluster.
+    [[nodiscard]] std::uint32_t triangles_of(std::size_t cluster) const { return (counts()[cluster] & 63u) + 1; }
     [[nodiscard]] std::size_t triangle_count() const { return triangle_count_; }
-    [[nodiscard]] ClusterBox box_of(std::size_t cluster) const { return boxes_[cluster].unpacked(); }
+    [[nodiscard]] ClusterBox box_of(std::size_t cluster) const { return boxes()[cluster].unpacked(); }
     // Contains all clusters: an aligned box.
-    [[nodiscard]] const ClusterBox& bound() const { return bound_; }
+    [[nodiscard]] ClusterBox bound() const {
+        return {bound_center_, {glm::vec3(bound_half_.x, 0, 0), {0, bound_half_.y, 0}, {0, 0, bound_half_.z}}};
+    }
     [[nodiscard]] const glm::vec3& largest() const { return largest_; }  // absolute coordinates
     // Differs for each call of cut() and deserialise() of the process; copies share it. 0: the mesh is empty.
     [[nodiscard]] std::uint64_t identity() const { return identity_; }
@@ -84,8 +147,9 @@ class ClusteredMesh {
     // A box whose half edges are integers, up to 2^15, times a power of two. It contains the triangles exactly.
     struct PackedBox {
         float center[3];
-        // Two numbers each, the first in the low half: the nine coordinates of the half edges, then
-        // 2^8 · vertices of the cluster + the bits of the power's exponent in float.
+        // Two numbers each, the first in the low half: the nine coordinates of the half edges, then the bits of the
+        // power's exponent in float + 2^8 if the cluster has twins: two of its triangles have an edge in the same
+        // direction, or a triangle has equal corners.
         std::uint32_t words[5];
 
         [[nodiscard]] ClusterBox unpacked() const {
@@ -97,31 +161,67 @@ class ClusteredMesh {
             }
             return box;
         }
-        [[nodiscard]] std::uint32_t vertex_count() const { return words[4] >> 24; }  // equal positions count as one
+        [[nodiscard]] bool has_twins() const { return (words[4] >> 24 & 1) != 0; }
     };
 
-    [[nodiscard]] std::span<const PackedBox> boxes() const { return {boxes_.data(), boxes_.size()}; }
+    [[nodiscard]] std::span<const PackedBox> boxes() const {
+        return {reinterpret_cast<const PackedBox*>(packed_.data() + std::size_t{4} * corner_words_), cluster_count_};
+    }
 
   private:
-    friend class PatchBuilder;
+    friend class MeshPacker;
     friend class PatchReader;
     friend struct StoredMesh;
-    [[nodiscard]] static std::uint64_t next_identity();
 
-    Vector<std::uint32_t> order_;
-    Vector<Cluster> clusters_;
-    std::size_t triangle_count_ = 0;
-    ClusterBox bound_;
+    // What it needs as long as nothing is lent, and the order after original indices were.
+    struct Own {
+        Vector<std::uint32_t> order;
+        Vector<glm::vec3> vertices;  // of one cluster after the other
+        Vector<std::uint32_t> first_vertices;
+    };
+    // Of the first of each 16 clusters but the first 16.
+    struct Group {
+        std::uint32_t first_triangle, first_word;
+    };
+    struct Place {
+        std::uint32_t first_triangle, first_word;
+        std::uint32_t first_bit;  // of its corners, from that word
+    };
+    static constexpr std::size_t kGroup = 16;
+
+    [[nodiscard]] static std::uint64_t next_identity();
+    [[nodiscard]] std::size_t group_count() const { return cluster_count_ == 0 ? 0 : (cluster_count_ - 1) / kGroup; }
+    [[nodiscard]] const Group* groups() const {
+        return reinterpret_cast<const Group*>(boxes().data() + cluster_count_);
+    }
+    // Of each cluster: triangles − 1, and in the two highest bits how many bits its corners take less than the widest.
+    [[nodiscard]] const std::uint8_t* counts() const {
+        return reinterpret_cast<const std::uint8_t*>(groups() + group_count());
+    }
+    [[nodiscard]] std::uint32_t bits_of(std::size_t cluster) const { return corner_bits_ - (counts()[cluster] >> 6); }
+    [[nodiscard]] const std::uint32_t* corner_words() const {
+        return reinterpret_cast<const std::uint32_t*>(packed_.data());
+    }
+    [[nodiscard]] Place place_of(std::size_t cluster) const {
+        Place place{};
+        const std::size_t group = cluster / kGroup;
+        if (group != 0) place = {groups()[group - 1].first_triangle, groups()[group - 1].first_word, 0};
+        for (std::size_t c = group * kGroup; c < cluster; ++c) {
+            place.first_triangle += triangles_of(c);
+            place.first_bit += 3 * triangles_of(c) * bits_of(c);
+        }
+        return place;
+    }
+
+    // The words of the corners, the boxes, groups and counts. Kernels read up to a box's size beyond the corners.
+    Vector<std::byte> packed_;
+    Owner<Own> own_;
+    const glm::vec3* lent_positions_ = nullptr;
+    const std::uint32_t* lent_indices_ = nullptr;
+    ResetOnMove<std::uint32_t> cluster_count_, triangle_count_, corner_words_;
+    std::uint32_t corner_bits_ = 1;  // of the clusters' corners, the most
+    glm::vec3 bound_center_{0.0f}, bound_half_{0.0f};
     glm::vec3 largest_{0.0f};
-    Vector<PackedBox> boxes_;  // one a cluster
-    // Where its corners begin, and whether two of its triangles share an edge in one direction (patch.hpp).
-    Vector<std::uint32_t> firsts_;
-    Vector<std::uint32_t> corners_;
-    // Of one cluster after the other, with the first vertex of each; or those that are lent.
-    Vector<glm::vec3> vertices_;
-    Vector<std::uint32_t> first_vertices_;
-    std::span<const glm::vec3> lent_positions_;
-    std::span<const std::uint32_t> lent_indices_;
     ResetOnMove<std::uint64_t> identity_;
 };
 

@@ -141,10 +141,12 @@ struct MeshDescription {
     // True: calls World::find_occluders with default options. The occluders hide other objects, so set it for opaque
     // meshes only. Takes a second or more for 100,000 triangles.
     bool occluders = false;
-    // True: views that ask for a picture list the mesh's triangles, in clusters (World::clusters_of).
+    // True: views that ask for a picture list the mesh's triangles, in clusters (World::clusters_of). These read the
+    // World's own positions and indices: they add a tenth to a quarter to the mesh's memory.
     bool clusters = false;
     // With clusters: those of this mesh that were cut before, as BakedScene::clusters() has them, or nullptr to cut the
-    // mesh. Error: they are of another mesh.
+    // mesh. They are copied without what they hold or were lent. Error: they are of another mesh; after permuted
+    // indices were lent to them that is the permuted one.
     const depth::ClusteredMesh* precut = nullptr;
     // With clusters: set it if the renderer drops back faces; they are then not listed. Mirrored objects list both
     // sides.

@@ -153,7 +153,8 @@ class World {
     Result<void> set_occludes(ObjectHandle object, bool occludes);  // as ObjectDescription; of an object with a mesh
 
     // Returns the clusters of a mesh with MeshDescription::clusters, as of the last update; nullptr for other meshes.
-    // Permute the index buffer that you draw by its triangle_order().
+    // Permute the index buffer that you draw by its triangle_order(). It reads the World's positions: call keep_copy()
+    // of a copy before the mesh changes or is removed.
     [[nodiscard]] const depth::ClusteredMesh* clusters_of(MeshHandle mesh) const;
 
     Result<NodeHandle> add_node(const NodeDescription& description = {});
