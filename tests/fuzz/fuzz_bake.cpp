@@ -46,9 +46,13 @@ void read_all(const bake::BakedScene& scene) {
     (void)seen;
 }
 
-// Attaches the scene as a region, and asks each object and the whole.
-void ask_region(bake::BakedScene&& scene) {
-    const auto region = bake::prepare_region(std::move(scene));
+// Attaches the scene as a region, and asks each object and the whole. What was checked loses no object of a view.
+void ask_region(bake::BakedScene&& scene, bool trust_contents) {
+    const std::span<const std::uint32_t> masks = scene.tree().layer_masks();
+    const Vector<std::uint32_t> layers(masks.begin(), masks.end());
+    bake::BakedRegionOptions options;
+    options.trust_contents = trust_contents;
+    const auto region = bake::prepare_region(std::move(scene), options);
     if (!region) return;
     World world;
     const auto handle = world.attach(*region, {1000.0, 0.0, 0.5});
@@ -59,10 +63,20 @@ void ask_region(bake::BakedScene&& scene) {
     camera.position = {998.0, 0.0, 0.0};
     camera.forward = {1.0, 0.0, 0.0};
     ViewResult visible;
+    std::size_t in_view = 0;
+    for (std::uint32_t i = 0; i < region->object_count(); ++i)
+        if (layers[i] != 0)
+            in_view += cull::classify(*frustum_of(camera), *world.box_of(*world.object_in(*handle, i))) !=
+                       cull::Verdict::outside;
     for (const auto order : {cull::ResultOrder::tree, cull::ResultOrder::ascending})
-        if (world.view({.camera = camera, .order = order}, visible))
-            for (std::size_t i = 0; i < visible.size(); ++i)
+        if (world.view({.camera = camera, .order = order}, visible)) {
+            std::size_t of_region = 0;
+            for (std::size_t i = 0; i < visible.size(); ++i) {
                 if (!world.contains(visible[i].object)) std::abort();
+                of_region += visible[i].object.index >= kFirstRegionIndex ? 1 : 0;
+            }
+            if (!trust_contents && of_region != in_view) std::abort();
+        }
     (void)world.raycast({camera.position, camera.forward});
     Vector<ObjectRef> found;
     world.overlap(Sphere{{1000.0, 0.0, 0.0}, 2.0}, found);
@@ -80,6 +94,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (!scene) return 0;
     read_all(*scene);
     fuzz::query(scene->tree());
-    ask_region(std::move(*scene));
+    ask_region(std::move(*scene), true);
+    scene = bake::BakedScene::from_memory(file);
+    ask_region(std::move(*scene), false);
     return 0;
 }

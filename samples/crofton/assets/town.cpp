@@ -14,7 +14,7 @@ namespace {
 using namespace town;
 
 constexpr std::uint32_t kDefaultInstances = 3000;
-constexpr std::uint32_t kMaxInstances = 1'000'000;
+constexpr std::uint32_t kMaxInstances = 16'000'000;
 constexpr double kInstancesPerBlock = 245.0;  // vehicles and country included, measured on the default town
 constexpr double kVehiclesPerBlock = 12.0;
 constexpr double kTurn = 0.4;       // of the whole town against the axes, as towns do
@@ -114,7 +114,8 @@ std::vector<glm::dvec3> make_walk(const Grid& grid, const Transform& root) {
 Result<SceneSource> make_town(const LoadOptions& options) {
     const std::uint32_t wanted = options.instances == 0 ? kDefaultInstances : options.instances;
     if (wanted > kMaxInstances)
-        return fail(ErrorCode::out_of_range, wanted, "town: at most 1000000 instances, not " + std::to_string(wanted));
+        return fail(ErrorCode::out_of_range, wanted,
+                    "town: at most " + std::to_string(kMaxInstances) + " instances, not " + std::to_string(wanted));
     SceneSource source{"town", scene::Scene({options.criterion}), {}, {}, {}, {}};
     const Transform turn = *from_trs({}, glm::angleAxis(kTurn, glm::dvec3(0, 1, 0)), glm::dvec3(1.0));
     const auto root = source.scene.add_node(scene::kNone, turn, ~0u, "town");

@@ -491,7 +491,7 @@ void add_frames_command(CommandLine& line) {
         "--camera", options->camera,
         "orbit | street | flight | random, or a JSON file of cameras; orbit by default, flight over regions");
     command.option("--seed", options->seed, "Seed of built-in scenes and of random cameras").show_default();
-    command.option("--instances", options->instances, "Number of instances of the town, up to 1000000; 0: about 3000")
+    command.option("--instances", options->instances, "Number of instances of the town, up to 16000000; 0: about 3000")
         .show_default();
     command.option("--size", options->size, "Size of the picture, WIDTHxHEIGHT").show_default();
     command.option("--bounds", options->bounds, "sphere | aabb | obb-volume | obb-area | obb-perimeter | obb-frustum")

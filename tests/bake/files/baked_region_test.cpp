@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 #include <algorithm>
 #include <crofton/bake/region_files.hpp>
+#include <crofton/boxtree/layout.hpp>
 #include <crofton/crofton.hpp>
 #include <crofton/occlude/occluder.hpp>
 #include <error_of.hpp>
@@ -56,6 +57,54 @@ struct Village {
         return bake::bake(scene, serial_executor(), {.occluders = &occluders, .looks = looks}).value();
     }
 };
+
+// Where a stored tree has its nodes and leaves, from the begin of its section on: after 104 bytes, of which five counts
+// begin at the fortieth.
+struct StoredTree {
+    std::uint64_t boxes = 0, free_items = 0, axes = 0, nodes = 0, leaves = 0;
+
+    [[nodiscard]] std::size_t nodes_begin() const {
+        return 104 + boxes * (sizeof(Obb) + 4) + free_items * 4 + axes * sizeof(boxtree::Axes);
+    }
+    [[nodiscard]] std::size_t leaves_begin() const {
+        return nodes_begin() +
+               nodes * (sizeof(boxtree::Node) + sizeof(boxtree::LeafRange) + sizeof(boxtree::NodeRadii));
+    }
+    [[nodiscard]] std::size_t slots_begin() const {
+        return leaves_begin() + leaves * (sizeof(boxtree::Leaf) + 1 + sizeof(boxtree::RadiusRange));
+    }
+};
+
+// Changes the tree of a file and makes its checksums right.
+template <class Change>
+Vector<std::byte> with_tree(const Vector<std::byte>& file, Change change) {
+    return bake_test::with_table(file, [&](Header& header, Section* sections) {
+        for (std::uint32_t i = 0; i < header.section_count; ++i) {
+            if (std::string_view(sections[i].name, 5) != std::string_view("tree", 5)) continue;
+            std::byte* const tree = reinterpret_cast<std::byte*>(&header) + sections[i].offset;
+            StoredTree places;
+            std::memcpy(&places, tree + 40, sizeof places);
+            return change(tree, places);
+        }
+        FAIL("no tree");
+    });
+}
+
+template <class Block>
+Block& block_at(std::byte* tree, std::size_t begin, std::size_t i = 0) {
+    return *reinterpret_cast<Block*>(tree + begin + i * sizeof(Block));
+}
+
+std::vector<std::uint64_t> seen_in(const Region& region, const Camera& camera) {
+    World world({.pairs = false});
+    REQUIRE(world.attach(region, {}));
+    REQUIRE(world.update());
+    ViewResult visible;
+    REQUIRE(world.view({.camera = camera}, visible));
+    std::vector<std::uint64_t> users;
+    for (std::size_t i = 0; i < visible.size(); ++i) users.push_back(visible[i].user);
+    return users;
+}
 
 }  // namespace
 
@@ -229,5 +278,71 @@ TEST_SUITE("bake/baked_region") {
         empty.update();
         const Vector<std::byte> nothing = bake::bake(empty).value();
         CHECK(prepare_region(*BakedScene::from_memory(nothing)).value().object_count() == 0);
+    }
+
+    TEST_CASE("a forged tree whose sums are right is refused before it is attached, or finds what is there") {
+        oracle::NearMisses random(8);
+        const Village village(random);
+        const Vector<std::byte> file =
+            bake::bake(village.scene, serial_executor(), {.region_max_origin = RegionOptions().max_origin}).value();
+        BakedRegionOptions trusting;
+        trusting.trust_contents = true;
+        const auto prepare_of = [](const Vector<std::byte>& forged, const BakedRegionOptions& options = {}) {
+            auto baked = BakedScene::from_memory(forged);
+            return baked ? prepare_region(std::move(*baked), options) : Result<Region>(baked.error());
+        };
+        const auto refused = [&](auto change, std::string_view why, bool by_links) {
+            const Vector<std::byte> forged = with_tree(file, change);
+            const auto region = prepare_of(forged);
+            REQUIRE_FALSE(region);
+            CHECK(error_of(region).code == ErrorCode::parse);
+            INFO(error_of(region).message);
+            CHECK(error_of(region).message.find(why) != std::string::npos);
+            CHECK(prepare_of(forged, trusting).has_value() != by_links);
+        };
+        REQUIRE(prepare_of(file));
+        const auto node = [](std::byte* tree, const StoredTree& at) -> boxtree::Node& {
+            return block_at<boxtree::Node>(tree, at.nodes_begin());
+        };
+        const auto leaf = [](std::byte* tree, const StoredTree& at) -> boxtree::Leaf& {
+            return block_at<boxtree::Leaf>(tree, at.leaves_begin());
+        };
+        // Contents, which no link depends on.
+        refused([&](std::byte* t, const StoredTree& at) { node(t, at).half_xy[0] = boxtree::pair_of(0, 0); },
+                "a bound does not contain the boxes below it", false);
+        refused([&](std::byte* t, const StoredTree& at) { node(t, at).origin[1] += 1.0; },
+                "a bound does not contain the boxes below it", false);
+        refused([&](std::byte* t, const StoredTree& at) { node(t, at).rounding = -1.0f; }, "frame", false);
+        refused([&](std::byte* t, const StoredTree& at) { node(t, at).layers_any[0] = 0; }, "layers do not match",
+                false);
+        refused([&](std::byte* t, const StoredTree& at) { leaf(t, at).xy[0] ^= 0x100; }, "does not match its box",
+                false);
+        refused([&](std::byte* t, const StoredTree& at) { leaf(t, at).layers[1] = 0; }, "layers do not match", false);
+        // Links.
+        refused([&](std::byte* t, const StoredTree& at) { node(t, at).child[0] = 0; }, "does not know its parent",
+                true);
+        refused([&](std::byte* t, const StoredTree& at) { node(t, at).child[0] = 1000000; }, "does not exist", true);
+        refused([&](std::byte* t, const StoredTree& at) { node(t, at).child[0] = node(t, at).child[1]; },
+                "does not know its parent", true);
+        refused([&](std::byte* t, const StoredTree& at) { block_at<std::uint32_t>(t, at.slots_begin()) = 1000000; },
+                "is not where its slot says", true);
+
+        Camera camera;
+        camera.position = {0.0, 2.0, 0.0};
+        camera.forward = {1.0, 0.0, 0.3};
+        const auto expected = seen_in(prepare_of(file).value(), camera);
+        REQUIRE(expected.size() > 3);
+        int taken = 0;
+        for (int i = 0; i < 2000; ++i) {
+            const auto region = prepare_of(with_tree(file, [&](std::byte* tree, const StoredTree& at) {
+                const std::size_t begin = at.nodes_begin(), size = at.slots_begin() + 64 * at.leaves - begin;
+                tree[begin + static_cast<std::size_t>(random.number(0.0, static_cast<double>(size)))] ^=
+                    static_cast<std::byte>(1u << static_cast<unsigned>(random.number(0.0, 8.0)));
+            }));
+            if (!region) continue;
+            ++taken;
+            CHECK(seen_in(*region, camera) == expected);
+        }
+        CHECK(taken < 1000);
     }
 }

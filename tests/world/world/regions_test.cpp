@@ -565,7 +565,11 @@ TEST_SUITE("world/regions") {
     }
 
     TEST_CASE("pairs and contacts of moving objects with regions are those of single objects, with their phases") {
-        for (const bool deep : {false, true}) {
+        const glm::dvec3 billion(-0.99e9, 3e8 + 0.3, 0.99e9 + 0.1);
+        for (const auto& where :
+             {std::pair(false, glm::dvec3(0.0)), {true, glm::dvec3(0.0)}, {false, billion}, {true, billion}}) {
+            const bool deep = where.first;
+            const glm::dvec3 far = where.second;
             NearMisses random(deep ? 78 : 79);
             TwoWorlds worlds({.contact_margin = deep ? 0.25 : 0.0, .mesh_depth = deep, .updates_to_rest = 3});
             const TriangleMesh crate = testing::cuboid({0.75f, 0.5f, 1.0f});
@@ -577,7 +581,7 @@ TEST_SUITE("world/regions") {
             const auto capsule = convex::Shape::capsule(0.5f, 0.25f).value();
             const auto place = [&] {
                 const double x = 0.25 * random.index(40), y = 0.25 * random.index(40), z = 0.25 * random.index(40);
-                return glm::dvec3(x, y, z) - 5.0;
+                return far + (glm::dvec3(x, y, z) - 5.0);
             };
             const auto transform = [&] {
                 Transform result{glm::dmat3(1.0), place()};
@@ -585,9 +589,14 @@ TEST_SUITE("world/regions") {
                 if (random.index(3) == 0) result.linear[0] *= -1.5;
                 return result;
             };
+            const auto own_bound = [&] {
+                Bound bound = random_object(random, 5.0).bound;
+                bound.box.center += far;
+                return bound;
+            };
             for (int i = 0; i < 36; ++i) {
                 ObjectDescription description{.user = worlds.next_number++, .layers = 2, .collides_with = 3};
-                if (i % 3 == 0) description.bound = random_object(random, 5.0).bound;
+                if (i % 3 == 0) description.bound = own_bound();
                 if (i % 3 == 1) description.transform = transform();
                 if (i % 3 == 2) description.bound = box_at(place(), 1.0f), description.shape = &capsule;
                 ObjectHandle made[3];
@@ -635,7 +644,7 @@ TEST_SUITE("world/regions") {
             };
             for (int step = 0; step < 60; ++step) {
                 if (step % 4 == 0 && worlds.attached.size() < 3) {
-                    const glm::dvec3 origin = 0.2 * place();
+                    const glm::dvec3 origin = far + 0.2 * (place() - far);
                     worlds.attach(region, objects, origin);
                 }
                 if (step % 11 == 10) worlds.detach(worlds.attached.begin()->first);
@@ -648,7 +657,7 @@ TEST_SUITE("world/regions") {
                 for (unsigned m = 0; m < moves; ++m) {
                     const std::size_t i = random.index(36);
                     const Transform moved = transform();
-                    const Bound bound = i % 3 == 2 ? Bound(box_at(place(), 1.0f)) : random_object(random, 5.0).bound;
+                    const Bound bound = i % 3 == 2 ? Bound(box_at(place(), 1.0f)) : own_bound();
                     const bool hidden = random.index(4) == 0;
                     for (int w = 0; w < 3; ++w) {
                         World& world = *all[w];

@@ -67,6 +67,9 @@ class Meshes {
 Result<Region> prepare(const BakedScene& scene, boxtree::BoxTree* tree, const BakedRegionOptions& options,
                        Executor& executor) {
     return detail::recover([&]() -> Result<Region> {
+        if (tree != nullptr && !options.trust_contents)
+            if (auto valid = tree->validate(); !valid)
+                return fail(ErrorCode::parse, valid.error().item, {"stored ", valid.error().message});
         const std::span<const InstanceRecord> instances = scene.instances();
         const std::span<const std::uint32_t> layers = scene.tree().layer_masks();
         const Vector<std::uint32_t> kinds = occluders_of_instances(scene, options);

@@ -32,12 +32,16 @@ inline PairPlane pair_plane_of(const double* normal) {
             boxtree::pair_of(0, std::abs(n[2]))};
 }
 
-struct KernelView {
+// Where a view is, in the coordinates of the boxes. Moved trees share a view's planes, and have a place each.
+struct ViewPlace {
     static constexpr unsigned kMaxPlanes = 12;
     double origin[3];
+    double far[kMaxPlanes];  // what a plane's value at a block's origin may be off by (block_planes.hpp)
+};
+
+struct KernelView : ViewPlace {
     KernelPlane planes[kMaxPlanes];
     PairPlane pair_planes[kMaxPlanes];  // for queries of a tree
-    double far[kMaxPlanes];             // what a plane's value at a block's origin may be off by (block_planes.hpp)
     std::uint32_t plane_count;
     std::uint32_t layer_mask;
 };
@@ -49,7 +53,7 @@ struct LocalOrigin {
     double l1_radius;  // ≥ |x| + extent, summed over the axes, of all that lies in the block
 };
 
-inline LocalOrigin local_origin(const KernelView& view, const double* origin, float l1_radius) {
+inline LocalOrigin local_origin(const ViewPlace& view, const double* origin, float l1_radius) {
     LocalOrigin result;
     for (int j = 0; j < 3; ++j) result.d[j] = origin[j] - view.origin[j];
     result.size = std::fabs(result.d[0]) + std::fabs(result.d[1]) + std::fabs(result.d[2]);

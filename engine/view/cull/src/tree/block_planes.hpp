@@ -22,20 +22,25 @@ inline std::uint32_t all_planes(const KernelView& view) {
 // For the blocks of a tree, whose root node has this origin and radius. The offset's seven roundings of 2^-53 of
 // Σ|origin − view| + |plane offset| each, as in local_plane, for any block whose origin lies in the root's bounds. It
 // may lie farther out by less than the block's L1 radius: the share of that in `rounding` has room for it.
-inline void bring_before(const double* root_origin, float root_l1_radius, std::uint32_t planes, KernelView& view) {
-    const LocalOrigin at = local_origin(view, root_origin, root_l1_radius);
+inline void bring_before(const double* root_origin, float root_l1_radius, std::uint32_t planes, const KernelView& view,
+                         ViewPlace& place) {
+    const LocalOrigin at = local_origin(place, root_origin, root_l1_radius);
     for (std::uint32_t rest = planes; rest; rest &= rest - 1) {
         const auto i = static_cast<std::uint32_t>(std::countr_zero(rest));
-        view.far[i] = 0x1p-49 * (at.size + at.l1_radius + std::fabs(view.planes[i].offset));
+        place.far[i] = 0x1p-49 * (at.size + at.l1_radius + std::fabs(view.planes[i].offset));
     }
+}
+
+inline void bring_before(const double* root_origin, float root_l1_radius, KernelView& view) {
+    bring_before(root_origin, root_l1_radius, all_planes(view), view, view);
 }
 
 inline constexpr double kMostOffset = 1.2e9;
 
-inline double value_at(const KernelView& view, std::size_t i, const double* origin) {
+inline double value_at(const KernelView& view, const ViewPlace& place, std::size_t i, const double* origin) {
     const KernelPlane& plane = view.planes[i];
-    return plane.normal[0] * (origin[0] - view.origin[0]) + plane.normal[1] * (origin[1] - view.origin[1]) +
-           plane.normal[2] * (origin[2] - view.origin[2]) + plane.offset;
+    return plane.normal[0] * (origin[0] - place.origin[0]) + plane.normal[1] * (origin[1] - place.origin[1]) +
+           plane.normal[2] * (origin[2] - place.origin[2]) + plane.offset;
 }
 
 // In the block's units, not yet integers.
@@ -43,23 +48,25 @@ struct ScaledPlane {
     double offset, error_bound;
 };
 template <class Block>
-ScaledPlane scaled_plane(const KernelView& view, std::size_t i, const Block& block) {
+ScaledPlane scaled_plane(const KernelView& view, const ViewPlace& place, std::size_t i, const Block& block) {
     const double per_quantum = static_cast<double>(block.per_quantum);
-    return {value_at(view, i, block.origin) * per_quantum,
-            (static_cast<double>(block.rounding) + view.far[i]) * per_quantum};
+    return {value_at(view, place, i, block.origin) * per_quantum,
+            (static_cast<double>(block.rounding) + place.far[i]) * per_quantum};
 }
 
 // Offsets are clamped where the sums, |offset| + 2^14 · 1.0005 · √3 · 32767, would leave 32 bits. A clamped offset is
 // nearer to 0 than the true one: a block that it finds certainly inside or outside is so.
-inline BlockPlane block_plane(const KernelView& view, std::size_t i, const boxtree::Node& node) {
-    const ScaledPlane plane = scaled_plane(view, i, node);
+inline BlockPlane block_plane(const KernelView& view, const ViewPlace& place, std::size_t i,
+                              const boxtree::Node& node) {
+    const ScaledPlane plane = scaled_plane(view, place, i, node);
     return {static_cast<std::int32_t>(std::max(-kMostOffset, std::min(kMostOffset, plane.offset))),
             static_cast<std::int32_t>(std::min(0x7fffffff * 1.0, plane.error_bound))};  // NaN decides nothing
 }
 
 // A leaf's plane must not claim a cut that is not certain. So a plane whose offset does not fit decides nothing.
-inline BlockPlane block_plane(const KernelView& view, std::size_t i, const boxtree::Leaf& leaf) {
-    const ScaledPlane plane = scaled_plane(view, i, leaf);
+inline BlockPlane block_plane(const KernelView& view, const ViewPlace& place, std::size_t i,
+                              const boxtree::Leaf& leaf) {
+    const ScaledPlane plane = scaled_plane(view, place, i, leaf);
     if (!(std::fabs(plane.offset) <= kMostOffset && plane.error_bound <= kMostOffset)) return {0, 0x7fffffff};
     return {static_cast<std::int32_t>(plane.offset), static_cast<std::int32_t>(plane.error_bound)};
 }

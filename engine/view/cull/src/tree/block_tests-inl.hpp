@@ -60,15 +60,15 @@ struct NodeSide {
 };
 
 // `normals` are along the node's axes.
-HWY_INLINE NodeTest test_node(const KernelView& view, const PairPlane* normals, const boxtree::Node& node,
-                              std::uint32_t planes) {
+HWY_INLINE NodeTest test_node(const KernelView& view, const ViewPlace& place, const PairPlane* normals,
+                              const boxtree::Node& node, std::uint32_t planes) {
     const DU du;
     NodeTest result;
     result.alive = result.inside = 0;
     BlockPlane before[KernelView::kMaxPlanes];
     for (std::uint32_t rest = planes; rest; rest &= rest - 1) {
         const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(rest);
-        before[i] = block_plane(view, i, node);
+        before[i] = block_plane(view, place, i, node);
     }
     for (std::size_t l = 0; l < boxtree::kWidth; l += hn::Lanes(du)) {
         const NodeRows rows(node, l);

@@ -47,10 +47,9 @@ struct MovedTreesQuery::State {
 
     const View* view = nullptr;
     bool usable = false;  // by filters
-    KernelView before_move;
+    KernelView planes_of_view;
     Statistics statistics;
-    std::array<KernelView, kMost> views;  // of which so many have the planes:
-    std::size_t views_made = 0;
+    std::array<ViewPlace, kMost> places;
     std::array<TreeKernelInput, kMost> inputs;
     std::array<std::uint32_t, kMost> planes;
     RawBuffer<std::uint32_t> inside, straddling, undecided, undecided_trees, work;
@@ -77,8 +76,7 @@ const Statistics& MovedTreesQuery::statistics() const {
 void MovedTreesQuery::start(const View& view) {
     state_->view = &view;
     state_->usable = is_usable(view.frustum) && has_unit_normals(view.frustum);
-    if (state_->usable) state_->before_move = kernel_view_of(view);
-    state_->views_made = 0;
+    if (state_->usable) state_->planes_of_view = kernel_view_of(view);
     state_->statistics = {};
 }
 
@@ -102,19 +100,12 @@ std::uint32_t MovedTreesQuery::planes_that_may_cut(const Obb& box) const {
 // each component times what the point is off by.
 void MovedTreesQuery::State::bring_before_tree(std::size_t t, const Asked& asked) {
     const MovedTree& tree = *asked.tree;
-    KernelView& moved = views[t];
-    if (t >= views_made) {
-        views_made = t + 1;
-        moved.plane_count = before_move.plane_count;
-        moved.layer_mask = before_move.layer_mask;
-        std::copy_n(before_move.planes, before_move.plane_count, moved.planes);
-        std::copy_n(before_move.pair_planes, before_move.plane_count, moved.pair_planes);
-    }
+    ViewPlace& place = places[t];
     const glm::dvec3 origin = tree.move.back(view->frustum.origin);
-    for (int j = 0; j < 3; ++j) moved.origin[j] = origin[j];
+    for (int j = 0; j < 3; ++j) place.origin[j] = origin[j];
     const double rounding = tree.move.rounding(view->frustum.origin);
-    bring_before(tree.root_origin, tree.root_l1_radius, asked.planes, moved);
-    for (std::uint32_t rest = asked.planes; rest; rest &= rest - 1) moved.far[std::countr_zero(rest)] += rounding;
+    bring_before(tree.root_origin, tree.root_l1_radius, asked.planes, planes_of_view, place);
+    for (std::uint32_t rest = asked.planes; rest; rest &= rest - 1) place.far[std::countr_zero(rest)] += rounding;
 }
 
 void MovedTreesQuery::State::add(bool is_inside, std::uint32_t id, std::uint32_t* inside_ids,
@@ -140,9 +131,10 @@ MovedTreesQuery::State::Found MovedTreesQuery::State::ask(std::span<const Asked>
                      .leaf_counts = tree.arrays.leaf_counts,
                      .slot_items = tree.arrays.slot_items,
                      .axes = tree.arrays.axes,
-                     .view = &views[t],
+                     .view = &planes_of_view,
                      .exact = mode == CullMode::exact,
-                     .first_id = first_ids[t]};
+                     .first_id = first_ids[t],
+                     .place = &places[t]};
         planes[t] = asked[t].planes;
         // The walk meets these behind nodes and leaves, which it prefetches itself.
         hwy::Prefetch(tree.arrays.ranges);

@@ -201,7 +201,7 @@ void Query::run(const boxtree::BoxTree& tree, Executor& executor) {
     if (!is_usable(view_.frustum) || !has_unit_normals(view_.frustum)) return run_all(tree, executor);
     grow(visible_.undecided_, tree.boxes().size() + kPadding);
     KernelView view = kernel_view_of(view_);
-    bring_before(structure.nodes()[0].origin, structure.nodes()[0].l1_radius, all_planes(view), view);
+    bring_before(structure.nodes()[0].origin, structure.nodes()[0].l1_radius, view);
     TreeKernelInput input{structure.nodes().data(),
                           structure.leaves().data(),
                           structure.leaf_ranges().data(),

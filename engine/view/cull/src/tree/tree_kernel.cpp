@@ -58,7 +58,8 @@ std::size_t expand_tree(const TreeKernelInput& input, std::uint64_t entry, std::
     }
     const boxtree::Node& node = input.nodes[child];
     TurnedPlanes turned(*input.view);
-    const NodeTest test = test_node(*input.view, turned.along(input.axes, node.axes, planes), node, planes);
+    const NodeTest test =
+        test_node(*input.view, *input.view, turned.along(input.axes, node.axes, planes), node, planes);
     std::size_t count = 0;
     const std::uint32_t whole = seen(*input.view, node, test.alive & test.inside);
     for (std::uint32_t alive = test.alive; alive; alive &= alive - 1) {

@@ -21,7 +21,9 @@ struct TreeKernelInput {
     // in silence. For run_tree_kernel without `runs`.
     const std::uint16_t* leaves_with_candidates = nullptr;
     const std::uint16_t* nodes_with_candidates = nullptr;
-    std::uint32_t first_id = 0;  // for run_moved_trees_kernel: added to the items' ids
+    // For run_moved_trees_kernel: added to the items' ids, and where the view is in the tree's coordinates.
+    std::uint32_t first_id = 0;
+    const ViewPlace* place = nullptr;
 };
 
 // Slots [first, first + count), all of whose items are inside.
@@ -65,7 +67,7 @@ void run_tree_kernel(const TreeKernelInput& input, const std::uint64_t* entries,
                      TreeKernelOutput& output);
 
 // Handles several trees at once, each below its root. inputs[i] is asked for with the planes that planes[i] names.
-// Their views have planes of the same normals and the same layers. Requires 1 ≤ count ≤ kMostMovedTrees. `work` has
+// All have the first one's view. Requires 1 ≤ count ≤ kMostMovedTrees. `work` has
 // kMovedWorkLists lists for the nodes and leaves of all of them; `runs` is not used.
 inline constexpr std::size_t kMostMovedTrees = 64;
 void run_moved_trees_kernel(const TreeKernelInput* inputs, const std::uint32_t* planes, std::size_t count,

@@ -68,6 +68,10 @@ class Walk {
     [[nodiscard]] HWY_INLINE const TreeKernelInput& tree_of(std::uint32_t marked) const {
         return kMoved ? in_[tree_mark_of(marked)] : in_[0];
     }
+    [[nodiscard]] HWY_INLINE const ViewPlace& place_in(const TreeKernelInput& tree) const {
+        if constexpr (kMoved) return *tree.place;
+        return *in_->view;
+    }
     static HWY_INLINE std::uint32_t planes_of(std::uint32_t marked) {
         return kMoved ? marked & ((1u << kTreeMarkShift) - 1) : marked;
     }
@@ -125,11 +129,11 @@ class Walk {
         const DU du;
         const std::uint32_t planes = planes_of(marked);
         const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(planes);
-        const BlockPlane plane = block_plane(*tree.view, i, node);
+        const BlockPlane plane = block_plane(*in_->view, place_in(tree), i, node);
         const PairPlane normal = turned_.along(tree.axes, node.axes, planes)[i];
         for (std::size_t l = 0; l < boxtree::kWidth; l += hn::Lanes(du)) {
             const NodeSide side(NodeRows(node, l), normal, plane);
-            MF alive = hn::AndNot(side.outside, present(*tree.view, node.layers_every, node.layers_any, node.count, l));
+            MF alive = hn::AndNot(side.outside, present(*in_->view, node.layers_every, node.layers_any, node.count, l));
             if constexpr (kCandidates) alive = hn::And(alive, hn::RebindMask(DF(), mask_of(candidates >> l)));
             note<true>(node, l, alive, hn::IfThenZeroElse(hn::RebindMask(du, side.inside), hn::Set(du, planes)),
                        marked);
@@ -140,7 +144,8 @@ class Walk {
                                           std::uint32_t candidates) {
         const DU du;
         const std::uint32_t planes = planes_of(marked);
-        const NodeTest test = test_node(*tree.view, turned_.along(tree.axes, node.axes, planes), node, planes);
+        const NodeTest test =
+            test_node(*in_->view, place_in(tree), turned_.along(tree.axes, node.axes, planes), node, planes);
         for (std::size_t l = 0; l < boxtree::kWidth; l += hn::Lanes(du))
             note<false>(node, l, hn::RebindMask(DF(), mask_of((test.alive & candidates) >> l)),
                         hn::Load(du, test.planes + l), marked);
@@ -149,7 +154,8 @@ class Walk {
     // A node near a draw limit: its children are tested against planes and limits.
     HWY_INLINE void visit_limited(const boxtree::Node& node, boxtree::NodeId id, std::uint32_t planes) {
         const DU du;
-        const NodeTest test = test_node(*in_->view, turned_.along(in_->axes, node.axes, planes), node, planes);
+        const NodeTest test =
+            test_node(*in_->view, *in_->view, turned_.along(in_->axes, node.axes, planes), node, planes);
         for (std::size_t l = 0; l < boxtree::kWidth; l += hn::Lanes(du)) {
             const LimitTest limits = limits_.test(node, in_->axes[node.axes], id, l);
             const VU open = hn::IfThenZeroElse(hn::RebindMask(du, limits.kept), hn::Set(du, kLimited));
@@ -339,11 +345,11 @@ class Walk {
 
     HWY_INLINE void visit_one_plane_leaf(const TreeKernelInput& tree, std::uint32_t mark, boxtree::LeafId id,
                                          std::uint32_t planes) {
-        const KernelView& view = *tree.view;
+        const KernelView& view = *in_->view;
         const boxtree::Leaf& leaf = tree.leaves[id];
         if (kCountStatistics) out_.boxes_tested += leaf.count;
         const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(planes);
-        const LeafPlane plane{&view.pair_planes[i], block_plane(view, i, leaf)};
+        const LeafPlane plane{&view.pair_planes[i], block_plane(view, place_in(tree), i, leaf)};
         for (std::size_t l = 0; l < boxtree::kWidth; l += hn::Lanes(DU()))
             emit(tree, mark, id, l, test_leaf(LeafRows(leaf, l), present_candidates(id, leaf, l), plane));
     }
@@ -362,7 +368,7 @@ class Walk {
 
     HWY_INLINE void visit_many_plane_leaf(const TreeKernelInput& tree, std::uint32_t mark, boxtree::LeafId id,
                                           std::uint32_t straddled) {
-        const KernelView& view = *tree.view;
+        const KernelView& view = *in_->view;
         const boxtree::Leaf& leaf = tree.leaves[id];
         if (kCountStatistics) out_.boxes_tested += leaf.count;
         if constexpr (Limits::kAny)
@@ -371,7 +377,7 @@ class Walk {
         unsigned count = 0;
         for (std::uint32_t rest = straddled; rest; rest &= rest - 1) {
             const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(rest);
-            planes[count++] = {&view.pair_planes[i], block_plane(view, i, leaf)};
+            planes[count++] = {&view.pair_planes[i], block_plane(view, place_in(tree), i, leaf)};
         }
         // Nearly all have two, which need no loop.
         for (std::size_t l = 0; l < boxtree::kWidth; l += hn::Lanes(DU())) {
@@ -390,7 +396,7 @@ class Walk {
         unsigned count = 0;
         for (std::uint32_t rest = straddled; rest; rest &= rest - 1) {
             const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(rest);
-            planes[count++] = {&view.pair_planes[i], block_plane(view, i, leaf)};
+            planes[count++] = {&view.pair_planes[i], block_plane(view, view, i, leaf)};
         }
         for (std::size_t l = 0; l < boxtree::kWidth && l < leaf.count; l += hn::Lanes(du)) {
             const LimitTest limits = limits_.test(leaf, l);

@@ -47,8 +47,7 @@ class ManyViewsQuery {
         for (std::size_t v = 0; v < views_.size(); ++v) {
             vectors = vectors && is_usable(views_[v].frustum) && has_unit_normals(views_[v].frustum);
             kernel_views[v] = kernel_view_of(views_[v]);
-            bring_before(tree_.nodes()[0].origin, tree_.nodes()[0].l1_radius, all_planes(kernel_views[v]),
-                         kernel_views[v]);
+            bring_before(tree_.nodes()[0].origin, tree_.nodes()[0].l1_radius, kernel_views[v]);
         }
         if (!vectors) return run_one_by_one(visible);
         const auto decide = [](const void* context, std::uint32_t slot, std::uint32_t view) {

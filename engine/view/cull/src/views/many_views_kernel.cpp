@@ -66,7 +66,8 @@ class ManyWalk {
     HWY_INLINE std::size_t visit_node(std::uint32_t v, std::uint32_t id, std::uint32_t planes, std::size_t size,
                                       TurnedPlanes& turned) {
         const boxtree::Node& node = in_.nodes[id];
-        const NodeTest test = test_node(in_.views[v], turned.along(in_.axes, node.axes, planes), node, planes);
+        const NodeTest test =
+            test_node(in_.views[v], in_.views[v], turned.along(in_.axes, node.axes, planes), node, planes);
         const std::uint32_t whole = seen(in_.views[v], node, test.alive & test.inside);
         if (node.only_leaves) {
             note_leaves(node, test, whole, v);
@@ -267,7 +268,7 @@ class ManyWalk {
         LeafPlane planes[KernelView::kMaxPlanes];
         unsigned count = 0;
         for_each_bit(straddled, [&](unsigned i) {
-            planes[count++] = {&view.pair_planes[i], block_plane(view, i, leaf)};
+            planes[count++] = {&view.pair_planes[i], block_plane(view, view, i, leaf)};
         });
         const DU du;
         const VU bit = hn::Set(du, 1u << v);
