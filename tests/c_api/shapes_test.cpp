@@ -13,7 +13,7 @@ using namespace crofton::capi_test;
 
 namespace {
 
-const float kNaN = std::numeric_limits<float>::quiet_NaN();
+const float kFloatNaN = std::numeric_limits<float>::quiet_NaN();
 
 }  // namespace
 
@@ -188,7 +188,7 @@ TEST_SUITE("capi/shapes") {
         crofton_shape* none = nullptr;
         CHECK(shape_sphere(-1, &none) == CROFTON_INVALID_ARGUMENT);
         CHECK(shape_sphere(1, nullptr) == CROFTON_INVALID_ARGUMENT);
-        CHECK(shape_round(CROFTON_SHAPE_CAPSULE, kNaN, 1, &none) == CROFTON_NON_FINITE);
+        CHECK(shape_round(CROFTON_SHAPE_CAPSULE, kFloatNaN, 1, &none) == CROFTON_NON_FINITE);
         const float inside_out[3] = {1, -1, 1};
         CHECK(shape_box(inside_out, &none) == CROFTON_INVALID_ARGUMENT);
         CHECK(crofton_last_error_item() == 1);
@@ -215,7 +215,7 @@ TEST_SUITE("capi/shapes") {
         CHECK(shape_mesh(&surface, 0, &none) == CROFTON_OUT_OF_RANGE);
         CHECK(crofton_last_error_item() == 5);
         triangles[5] = 2;
-        corners[9] = kNaN;
+        corners[9] = kFloatNaN;
         CHECK(shape_mesh(&surface, 0, &none) == CROFTON_NON_FINITE);
         CHECK(crofton_last_error_item() == 3);
         corners[9] = 2e12f;

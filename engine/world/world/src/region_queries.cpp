@@ -81,8 +81,8 @@ void WholeView::add(std::uint32_t id, cull::Verdict verdict, cull::ResultOrder o
 bool Regions::may_be_within(const cull::DrawLimits& limits, const Attachment& region) const {
     const auto counts = [](double limit) { return std::abs(limit) <= kMaxCoordinate; };
     if (!is_finite(limits.eye)) return true;
-    constexpr double kSlack = 1.0 + 1e-9;
-    const double longer = std::max(1.0, limits.hysteresis) * kSlack, most = region.data().most_radius * longer;
+    constexpr double kRounding = 1.0 + 1e-9;
+    const double longer = std::max(1.0, limits.hysteresis) * kRounding, most = region.data().most_radius * longer;
     if (counts(limits.least_radius) && limits.least_radius > most) return false;
     if (!counts(limits.max_distance_in_radii)) return true;
     const glm::dvec3 apart = glm::abs(region.bounds.center - limits.eye),
