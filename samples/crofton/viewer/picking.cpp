@@ -47,7 +47,7 @@ std::optional<Pick> pick(const World& world, InstanceShapes& shapes, std::span<c
                          const Camera& camera, const glm::dvec2& cursor) {
     const Ray ray = ray_through(camera, cursor);
     Vector<ObjectHit> hits;
-    world.raycast_all(ray, hits, pipeline::kSeenLayer);
+    world.raycast_all(ray, hits, {pipeline::kSeenLayer});
     return nearest_of(
         hits, candidates, ray, [](const ObjectHit& hit) { return static_cast<scene::InstanceId>(hit.user); },
         [&](scene::InstanceId instance) { return shapes.raycast(ray, instance); });
