@@ -131,8 +131,8 @@ TEST_SUITE("bake/region_files") {
                              u = random.number(-1.0, 1.0), v = random.number(-0.05, 0.05), w = random.number(-1.0, 1.0);
                 const Ray ray{{5000.0 + x, 10.0, -2000.0 + z}, {u, v, w}};
                 Vector<ObjectHit> found, expected;
-                world.raycast_all(ray, found, n % 2 ? 1u : 2u);
-                single.raycast_all(ray, expected, n % 2 ? 1u : 2u);
+                world.raycast_all(ray, found, {n % 2 ? 1u : 2u});
+                single.raycast_all(ray, expected, {n % 2 ? 1u : 2u});
                 REQUIRE(found.size() == expected.size());
                 for (std::size_t h = 0; h < found.size(); ++h) {
                     CHECK(std::abs(found[h].t - expected[h].t) < 1e-8);
