@@ -8,8 +8,8 @@
 #include <mutex>
 
 #include <crofton/capi/call.hpp>
-#include <crofton/capi/growing.hpp>
 #include <crofton/capi/clustered_mesh.hpp>
+#include <crofton/capi/growing.hpp>
 #include <crofton/capi/shapes.hpp>
 
 struct crofton_world {

@@ -390,8 +390,8 @@ typedef struct crofton_query_filter {
 
 CROFTON_API crofton_query_filter crofton_default_query_filter(void);
 
-/* Sets hits[i] to the nearest hit of rays[i]. `filter` or NULL: all objects; so in the functions below. Tests an object's shape, or if it has none, its mesh's triangles, its
- * sphere or its box.
+/* Sets hits[i] to the nearest hit of rays[i]. `filter` or NULL: all objects; so in the functions below. Tests an
+ * object's shape, or if it has none, its mesh's triangles, its sphere or its box.
  */
 CROFTON_API crofton_status crofton_world_raycast(const crofton_world* world, const crofton_ray* rays, size_t count,
                                                  const crofton_query_filter* filter, crofton_object_hit* hits);

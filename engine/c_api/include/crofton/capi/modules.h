@@ -73,12 +73,12 @@ CROFTON_API crofton_depth_receivers crofton_default_depth_receivers(void);
 CROFTON_API crofton_status crofton_clustered_mesh_create(const crofton_mesh* mesh, uint32_t max_triangles,
                                                          crofton_clustered_mesh** clustered);
 CROFTON_API crofton_status crofton_clustered_mesh_destroy(crofton_clustered_mesh* clustered);
-/* Reads the positions in `mesh` from now on, and releases the copies: the clustered mesh then needs a tenth to a seventh
- * of the arrays' memory. They must outlive it, and stay as they are: a change is not noticed, views are then wrong, and
- * an index that is out of range is followed. `order`: a crofton_index_order. With permuted indices the order of
- * triangles is released, too. Clusters that were returned before are no longer valid. CROFTON_INVALID_ARGUMENT: another
- * mesh than was cut, or original indices after the order was released; CROFTON_OUT_OF_RANGE: an index. The item of an
- * error is the index, and nothing has changed. */
+/* Reads the positions in `mesh` from now on, and releases the copies: the clustered mesh then needs a tenth to a
+ * seventh of the arrays' memory. They must outlive it, and stay as they are: a change is not noticed, views are then
+ * wrong, and an index that is out of range is followed. `order`: a crofton_index_order. With permuted indices the order
+ * of triangles is released, too. Clusters that were returned before are no longer valid. CROFTON_INVALID_ARGUMENT:
+ * another mesh than was cut, or original indices after the order was released; CROFTON_OUT_OF_RANGE: an index. The item
+ * of an error is the index, and nothing has changed. */
 CROFTON_API crofton_status crofton_clustered_mesh_lend(crofton_clustered_mesh* clustered, const crofton_mesh* mesh,
                                                        uint32_t order);
 /* Returns the clusters; valid as long as the clustered mesh, until arrays are lent to it. triangle_count is 0 where the

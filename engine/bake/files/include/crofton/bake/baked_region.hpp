@@ -34,8 +34,8 @@ struct BakedRegionOptions {
 [[nodiscard]] Result<Region> prepare_region(const BakedScene& scene, const BakedRegionOptions& options = {},
                                             Executor& executor = serial_executor());
 // The same, and takes the scene's tree if it was baked for the region's max_origin (BakeOptions::region_max_origin),
-// instead of building one. RegionOptions::tree is then not read. Errors: also `parse` for a tree whose bounds, layers or
-// lanes are not those of its boxes, with `item` the node, leaf or instance.
+// instead of building one. RegionOptions::tree is then not read. Errors: also `parse` for a tree whose bounds, layers
+// or lanes are not those of its boxes, with `item` the node, leaf or instance.
 [[nodiscard]] Result<Region> prepare_region(BakedScene&& scene, const BakedRegionOptions& options = {},
                                             Executor& executor = serial_executor());
 
