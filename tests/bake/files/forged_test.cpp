@@ -376,7 +376,7 @@ TEST_SUITE("bake/forged") {
         REQUIRE_FALSE(read);
         CHECK(read.error().code == ErrorCode::unsupported);
         CHECK(read.error().message.find(
-                  "section 'clusters' is of version 0, this library reads version 1: bake it again") !=
+                  "section 'clusters' is of version 0, this library reads version 2: bake it again") !=
               std::string::npos);
     }
 

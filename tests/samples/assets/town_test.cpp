@@ -36,9 +36,9 @@ bool same_boxes(const scene::Scene& a, const scene::Scene& b) {
 }  // namespace
 
 TEST_SUITE("assets/town") {
-    TEST_CASE("more than a million instances are refused") {
+    TEST_CASE("more than 16 million instances are refused") {
         assets::LoadOptions options;
-        options.instances = 1'000'001;
+        options.instances = 16'000'001;
         const auto source = load_scene("town", options);
         REQUIRE_FALSE(source.has_value());
         CHECK(error_of(source).code == ErrorCode::out_of_range);

@@ -138,7 +138,7 @@ TEST_SUITE("world/guide") {
         CHECK(pushed == 1);
         REQUIRE(hit.has_value());
         REQUIRE(hit->has_value());
-        CHECK((*hit)->object == hero);
-        CHECK((*hit)->time == doctest::Approx((9.0 - 1.9 - 0.9) / 9.0).epsilon(1e-5));
+        CHECK((*hit)->object == floor);
+        CHECK((*hit)->time == doctest::Approx((9.0 - 0.2 - 0.9) / 9.0).epsilon(1e-5));  // on the floor
     }
 }
