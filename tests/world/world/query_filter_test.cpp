@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Queries that ignore objects answer as a World in which these objects are hidden.
 #include <doctest/doctest.h>
+#include <array>
 #include <cmath>
 #include <crofton/convex/query.hpp>
 #include <crofton/crofton.hpp>
@@ -41,7 +42,7 @@ class Pair {
             if (i % 4 == 2) description.shape = &shape;
             if (i == 0) description.bound = Obb{{0.0, -4.0, 0.0}}, description.shape = &ground;
             made.push_back({});
-            for (int w = 0; w < 2; ++w) {
+            for (std::size_t w = 0; w < 2; ++w) {
                 if (i % 4 == 3) {
                     description.bound = {};
                     description.mesh = meshes[w];
@@ -51,12 +52,13 @@ class Pair {
             }
             if (i % 4 == 3) random_turn = random.rotation();
         }
-        for (int w = 0; w < 2; ++w) regions[w] = world(w).attach(region, {0.0, 1.0, 0.0}).value();
+        for (std::size_t w = 0; w < 2; ++w) regions[w] = world(w).attach(region, {0.0, 1.0, 0.0}).value();
         update();
         for (int step = 0; step < 2; ++step) {
             for (int i = 1; i < 40; i += 8) {
                 const Bound to = Sphere{4.0 * random.direction(), 0.8};
-                for (int w = 0; w < 2; ++w) world(w).set_bound(made[static_cast<std::size_t>(i)][w], to).value();
+                for (std::size_t w = 0; w < 2; ++w)
+                    world(w).set_bound(made[static_cast<std::size_t>(i)][w], to).value();
             }
             update();
         }
@@ -72,7 +74,7 @@ class Pair {
         update();
     }
 
-    World& world(int w) { return w == 0 ? all : hidden; }
+    World& world(std::size_t w) { return w == 0 ? all : hidden; }
     void update() {
         all.update().value();
         hidden.update().value();
