@@ -543,10 +543,10 @@ def test_occluders_that_are_given_hide_what_is_behind(cube):
 
 
 def test_queries_ignore_objects(world):
-    first = world.add(sphere=crofton.Sphere((0, 0, -5), 1.0))
-    second = world.add(sphere=crofton.Sphere((0, 0, -9), 1.0), layers=2)
+    first = world.add(sphere=((0, 0, -5), 1.0))
+    second = world.add(sphere=((0, 0, -9), 1.0), layers=2)
     world.update()
-    ray, ball = ((0, 0, 0), (0, 0, -1)), crofton.Sphere((0, 0, -5), 3.5)
+    ray, ball = ((0, 0, 0), (0, 0, -1)), ((0, 0, -5), 3.5)
     assert world.raycast(*ray).object == first
     both = world.overlap(sphere=ball)
     for ignored in (first, [first], (first, first), both[:1]):

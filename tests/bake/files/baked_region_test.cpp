@@ -90,9 +90,13 @@ Vector<std::byte> with_tree(const Vector<std::byte>& file, Change change) {
     });
 }
 
-template <class Block>
-Block& block_at(std::byte* tree, std::size_t begin, std::size_t i = 0) {
-    return *reinterpret_cast<Block*>(tree + begin + i * sizeof(Block));
+// Changes a block of a file, which is not aligned in memory.
+template <class Block, class Change>
+void change_block(std::byte* place, Change change) {
+    Block block;
+    std::memcpy(static_cast<void*>(&block), place, sizeof block);
+    change(block);
+    std::memcpy(place, &block, sizeof block);
 }
 
 std::vector<std::uint64_t> seen_in(const Region& region, const Camera& camera) {
@@ -301,31 +305,34 @@ TEST_SUITE("bake/baked_region") {
             CHECK(prepare_of(forged, trusting).has_value() != by_links);
         };
         REQUIRE(prepare_of(file));
-        const auto node = [](std::byte* tree, const StoredTree& at) -> boxtree::Node& {
-            return block_at<boxtree::Node>(tree, at.nodes_begin());
+        const auto in_node = [](auto change) {
+            return [=](std::byte* tree, const StoredTree& at) {
+                change_block<boxtree::Node>(tree + at.nodes_begin(), change);
+            };
         };
-        const auto leaf = [](std::byte* tree, const StoredTree& at) -> boxtree::Leaf& {
-            return block_at<boxtree::Leaf>(tree, at.leaves_begin());
+        const auto in_leaf = [](auto change) {
+            return [=](std::byte* tree, const StoredTree& at) {
+                change_block<boxtree::Leaf>(tree + at.leaves_begin(), change);
+            };
         };
         // Contents, which no link depends on.
-        refused([&](std::byte* t, const StoredTree& at) { node(t, at).half_xy[0] = boxtree::pair_of(0, 0); },
+        refused(in_node([](boxtree::Node& n) { n.half_xy[0] = boxtree::pair_of(0, 0); }),
                 "a bound does not contain the boxes below it", false);
-        refused([&](std::byte* t, const StoredTree& at) { node(t, at).origin[1] += 1.0; },
-                "a bound does not contain the boxes below it", false);
-        refused([&](std::byte* t, const StoredTree& at) { node(t, at).rounding = -1.0f; }, "frame", false);
-        refused([&](std::byte* t, const StoredTree& at) { node(t, at).layers_any[0] = 0; }, "layers do not match",
+        refused(in_node([](boxtree::Node& n) { n.origin[1] += 1.0; }), "a bound does not contain the boxes below it",
                 false);
-        refused([&](std::byte* t, const StoredTree& at) { leaf(t, at).xy[0] ^= 0x100; }, "does not match its box",
-                false);
-        refused([&](std::byte* t, const StoredTree& at) { leaf(t, at).layers[1] = 0; }, "layers do not match", false);
+        refused(in_node([](boxtree::Node& n) { n.rounding = -1.0f; }), "frame", false);
+        refused(in_node([](boxtree::Node& n) { n.layers_any[0] = 0; }), "layers do not match", false);
+        refused(in_leaf([](boxtree::Leaf& l) { l.xy[0] ^= 0x100; }), "does not match its box", false);
+        refused(in_leaf([](boxtree::Leaf& l) { l.layers[1] = 0; }), "layers do not match", false);
         // Links.
-        refused([&](std::byte* t, const StoredTree& at) { node(t, at).child[0] = 0; }, "does not know its parent",
-                true);
-        refused([&](std::byte* t, const StoredTree& at) { node(t, at).child[0] = 1000000; }, "does not exist", true);
-        refused([&](std::byte* t, const StoredTree& at) { node(t, at).child[0] = node(t, at).child[1]; },
-                "does not know its parent", true);
-        refused([&](std::byte* t, const StoredTree& at) { block_at<std::uint32_t>(t, at.slots_begin()) = 1000000; },
-                "is not where its slot says", true);
+        refused(in_node([](boxtree::Node& n) { n.child[0] = 0; }), "does not know its parent", true);
+        refused(in_node([](boxtree::Node& n) { n.child[0] = 1000000; }), "does not exist", true);
+        refused(in_node([](boxtree::Node& n) { n.child[0] = n.child[1]; }), "does not know its parent", true);
+        refused(
+            [](std::byte* t, const StoredTree& at) {
+                change_block<std::uint32_t>(t + at.slots_begin(), [](std::uint32_t& slot) { slot = 1000000; });
+            },
+            "is not where its slot says", true);
 
         Camera camera;
         camera.position = {0.0, 2.0, 0.0};
