@@ -191,7 +191,7 @@ class Culler {
     }
 
   private:
-    // What a call listed, copied while it has the lock.
+    // Holds a copy of what a call listed. The call makes it while it holds the lock.
     struct Listed {
         std::vector<std::uint32_t> object, cluster;
         std::vector<std::uint64_t> triangles;

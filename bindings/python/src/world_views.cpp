@@ -275,7 +275,7 @@ void bind_world_views(py::module_& module, py::class_<PyWorld>& type) {
                            "mesh: the handle is stale: the mesh was removed, or is of another World"});
                 const depth::ClusteredMesh* const cut = w.clusters_of(mesh);
                 if (cut == nullptr) return nullptr;
-                // Which reads no positions of a World that may be gone.
+                // Copies the positions: the World that owns them may be destroyed before the clusters.
                 auto copy = std::make_shared<depth::ClusteredMesh>(*cut);
                 copy->keep_copy();
                 return copy;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Triangulates the flat patches of a mesh anew, at minimum weight.
+// Replaces the triangles of a mesh's flat patches by triangulations of minimum weight.
 #include <algorithm>
 #include <chrono>
 #include <cmath>

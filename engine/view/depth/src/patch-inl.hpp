@@ -56,8 +56,8 @@ class PatchDrawer {
         return visible_;
     }
 
-    // Of a cluster that is unclear: its triangles that are well before the near plane are as others are. Those of the
-    // nearest surface show against it, so it does not matter that it was drawn before.
+    // Asks which triangles of an unclear cluster show. Triangles well before the near plane are asked as those of other
+    // clusters. The cluster is drawn already, but triangles of the nearest surface still show against it.
     std::uint64_t ask() {
         PatchUnpacker(patch_).read();
         float least_w = std::numeric_limits<float>::infinity();
@@ -111,7 +111,7 @@ class PatchDrawer {
         });
     }
 
-    // Of vertices that are surely at least w before the eye.
+    // Sets up the faces. All vertices must be at least w before the eye.
     HWY_INLINE void set_faces(float w) {
         const float move = picture_.grid + pixel_error(picture_, errors_, w);
         const FaceSetup setup(picture_, object_, projection_, vertices_, move, errors_.z / w, errors_.w / w);

@@ -52,7 +52,7 @@ struct Patch {
     [[nodiscard]] glm::vec3 vertex(std::size_t v) const {
         return {coordinates[0][v], coordinates[1][v], coordinates[2][v]};
     }
-    // Of the vertex with this number, which corner k of the triangle is the first to name.
+    // Returns the position of the vertex with this number. Corner k of the triangle is the first that names it.
     [[nodiscard]] const glm::vec3& position_of(std::uint32_t triangle, std::uint32_t k, std::uint32_t number) const {
         if (indices == nullptr) return positions[number];
         return positions[indices[std::size_t{3} * (order != nullptr ? order[triangle] : triangle) + k]];

@@ -49,7 +49,7 @@ struct ExcludedSamples {
     std::uint64_t columns_ = 0, rows_ = 0;
 };
 
-// Of the eight rows at hand: the samples between the lines, and the plane's share.
+// Holds, for eight rows, the samples between the lines and the part of the plane's depth that depends on the row.
 struct Band {
     alignas(32) float low[kTile], high[kTile], ups[kTile];
 };

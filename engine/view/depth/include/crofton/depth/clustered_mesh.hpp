@@ -123,7 +123,7 @@ class ClusteredMesh {
         const ClusteredMesh* mesh_;
     };
     [[nodiscard]] Clusters clusters() const { return Clusters(this); }
-    // Of a cluster.
+    // Returns how many triangles a cluster has.
     [[nodiscard]] std::uint32_t triangles_of(std::size_t cluster) const { return (counts()[cluster] & 63u) + 1; }
     [[nodiscard]] std::size_t triangle_count() const { return triangle_count_; }
     [[nodiscard]] ClusterBox box_of(std::size_t cluster) const { return boxes()[cluster].unpacked(); }
@@ -173,13 +173,14 @@ class ClusteredMesh {
     friend class PatchReader;
     friend struct StoredMesh;
 
-    // What it needs as long as nothing is lent, and the order after original indices were.
+    // Holds the copies that a mesh needs until arrays are lent; `order` stays if the lent indices are the original
+    // ones.
     struct Own {
         Vector<std::uint32_t> order;
         Vector<glm::vec3> vertices;  // of one cluster after the other
         Vector<std::uint32_t> first_vertices;
     };
-    // Of the first of each 16 clusters but the first 16.
+    // Says where every 16th cluster begins. The first cluster, which begins at 0, has none.
     struct Group {
         std::uint32_t first_triangle, first_word;
     };
@@ -194,7 +195,8 @@ class ClusteredMesh {
     [[nodiscard]] const Group* groups() const {
         return reinterpret_cast<const Group*>(boxes().data() + cluster_count_);
     }
-    // Of each cluster: triangles − 1, and in the two highest bits how many bits its corners take less than the widest.
+    // Holds a byte for each cluster: its triangles − 1, and in the two highest bits how many bits fewer a corner takes
+    // than in the widest cluster.
     [[nodiscard]] const std::uint8_t* counts() const {
         return reinterpret_cast<const std::uint8_t*>(groups() + group_count());
     }
