@@ -51,6 +51,8 @@ void refuse_world_queries(Table& table) {
     CROFTON_REFUSE(crofton_world_pairs);
     CROFTON_REFUSE(crofton_world_contacts);
     CROFTON_REFUSE(crofton_world_cast);
+    CROFTON_REFUSE(crofton_world_cast_all);
+    CROFTON_REFUSE(crofton_world_manifolds);
     CROFTON_REFUSE(crofton_world_find_occluders);
     CROFTON_REFUSE(crofton_world_set_occluders);
     CROFTON_REFUSE(crofton_world_get_occluder);
@@ -66,6 +68,8 @@ void refuse_results(Table& table) {
     CROFTON_REFUSE(crofton_found_destroy);
     CROFTON_REFUSE(crofton_found_objects);
     CROFTON_REFUSE(crofton_found_hits);
+    CROFTON_REFUSE(crofton_found_shape_hits);
+    CROFTON_REFUSE(crofton_found_manifolds);
     CROFTON_REFUSE(crofton_view_result_depth);
 }
 

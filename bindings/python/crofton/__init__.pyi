@@ -314,6 +314,7 @@ class ObjectHit:
     normal: Vec3
     started_inside: bool
     triangle: Optional[int]
+    child: int
 
 class ShapeHit:
     object: ObjectHandle
@@ -322,12 +323,24 @@ class ShapeHit:
     normal: Vec3
     point: Vec3
     distance: float
+    triangle: Optional[int]
+    child: int
     resolved: bool
+
+class ObjectManifold:
+    object: ObjectHandle
+    user: int
+    normal: Vec3
+    depth: float
+    points: list[Vec3]
+    depths: list[float]
 
 class Closest:
     object: ObjectHandle
     user: int
     distance: float
+    triangle: Optional[int]
+    child: int
     on_shape: Vec3
     on_object: Vec3
 
@@ -496,6 +509,12 @@ class World:
     def cast(self, shape: Shape, velocity: Vector, pose: Optional[Matrix] = None, *, spin: Vector = ...,
              duration: float = 1.0, ignore_initial_overlaps: bool = False, layers: int = ...,
              ignored: Optional[Objects] = None) -> Optional[ShapeHit]: ...
+    def cast_all(self, shape: Shape, velocity: Vector, pose: Optional[Matrix] = None, *, spin: Vector = ...,
+                 duration: float = 1.0, ignore_initial_overlaps: bool = False, layers: int = ...,
+                 ignored: Optional[Objects] = None) -> list[ShapeHit]: ...
+    def contact_manifolds(self, shape: Shape, pose: Optional[Matrix] = None, *, margin: float = 0.0,
+                          max_points: int = 4, layers: int = ...,
+                          ignored: Optional[Objects] = None) -> list[ObjectManifold]: ...
     pairs: Array
     contacts: list[Contact]
     def box_of(self, object: ObjectHandle) -> Box: ...

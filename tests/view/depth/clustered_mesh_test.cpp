@@ -109,6 +109,102 @@ TEST_CASE("clusters come back from their bytes as they were, whatever the size o
         }
 }
 
+// Waves run over the mesh; some of its vertices meet, and others part.
+TriangleMesh deformed(const TriangleMesh& mesh, float time) {
+    TriangleMesh result = mesh;
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        glm::vec3& p = result.positions[i];
+        p += glm::vec3(3.0f * std::sin(0.2f * p.z + time), 2.0f * std::sin(0.3f * p.x + time), 0.0f);
+        if (i % 11 == 3) p = result.positions[i - 1];
+    }
+    return result;
+}
+
+TEST_CASE("a mesh that deforms keeps its clusters and their order, and their boxes follow") {
+    oracle::NearMisses random(9);
+    for (const std::uint32_t most : {1u, 7u, 64u}) {
+        const TriangleMesh mesh = hills(30, 50.0f, 5.0f, random);
+        const ClusteredMesh before = ClusteredMesh::cut(mesh.positions, mesh.indices, {.max_triangles = most}).value();
+        ClusteredMesh cut = before;
+        for (int step = 1; step <= 5; ++step) {
+            const TriangleMesh now = deformed(mesh, 0.7f * static_cast<float>(step));
+            if (step == 3) REQUIRE(cut.lend(deformed(mesh, 1.4f).positions, now.indices, depth::IndexOrder::original));
+            const std::uint64_t identity = cut.identity();
+            REQUIRE(cut.refit(now.positions, now.indices));
+            CHECK(cut.identity() != identity);
+            CHECK(std::ranges::equal(cut.triangle_order(), before.triangle_order()));
+            REQUIRE(cut.clusters().size() == before.clusters().size());
+            for (std::size_t c = 0; c < cut.clusters().size(); ++c) {
+                const Cluster x = cut.clusters()[c], y = before.clusters()[c];
+                CHECK(x.first_triangle == y.first_triangle);
+                CHECK(x.triangle_count == y.triangle_count);
+                const ClusterBox box = cut.box_of(c);
+                const glm::dmat3 edges(glm::dvec3(box.half_edges[0]), glm::dvec3(box.half_edges[1]),
+                                       glm::dvec3(box.half_edges[2]));
+                for (std::uint32_t k = x.first_triangle; k < x.first_triangle + x.triangle_count; ++k)
+                    for (std::uint32_t i = 0; i < 3; ++i) {
+                        const glm::vec3& p = now.positions[now.indices[3 * cut.triangle_order()[k] + i]];
+                        const glm::dvec3 at = glm::inverse(edges) * (glm::dvec3(p) - glm::dvec3(box.center));
+                        for (glm::length_t axis = 0; axis < 3; ++axis) CHECK(std::abs(at[axis]) <= 1.0 + 1e-9);
+                    }
+            }
+            // Every corner is where it is told to be.
+            CHECK(ClusteredMesh(cut).lend(now.positions, now.indices, depth::IndexOrder::original));
+        }
+        // Back where it was, it is the mesh that was cut.
+        REQUIRE(cut.refit(mesh.positions, mesh.indices));
+        CHECK(same(cut, before));
+    }
+}
+
+TEST_CASE("of a mesh that has deformed all triangles that own a sample are listed") {
+    oracle::NearMisses random(10);
+    depth::DepthCuller culler;
+    Checked all;
+    for (int step = 0; step < 12; ++step) {
+        Scene scene;
+        const TriangleMesh mesh = hills(20, 50.0f, 5.0f, random);
+        CutMesh& cut = scene.meshes.emplace_back(mesh, 0, false);
+        if (step % 2 == 0) cut.clusters.lend(cut.mesh.positions, cut.mesh.indices).value();  // without its order
+        const TriangleMesh now = deformed(cut.mesh, static_cast<float>(step));
+        cut.clusters.refit(now.positions, step % 2 == 0 ? now.indices : mesh.indices).value();
+        cut.mesh = now;
+        scene.objects.push_back({&cut, glm::dmat4(1.0)});
+        const Camera camera{.position = {90.0 * std::cos(step), 25.0, 90.0 * std::sin(step)},
+                            .forward = {-std::cos(step), -0.2, -std::sin(step)}};
+        const Checked checked = check(scene, camera, 120, 80, static_cast<std::uint64_t>(step), culler);
+        all.lost += checked.lost;
+        all.owners += checked.owners;
+        all.listed += checked.listed;
+        all.total += checked.total;
+    }
+    CHECK(all.lost == 0);
+    CHECK(all.owners > 1000);
+    CHECK(all.listed < all.total);
+}
+
+TEST_CASE("a deformed mesh that cannot be taken is refused, and the clusters stay as they were") {
+    oracle::NearMisses random(11);
+    const TriangleMesh mesh = hills(5, 50.0f, 5.0f, random);
+    const ClusteredMesh before = ClusteredMesh::cut(mesh.positions, mesh.indices).value();
+    ClusteredMesh cut = before;
+    TriangleMesh bad = mesh;
+    bad.positions[7].x = std::numeric_limits<float>::quiet_NaN();
+    const auto nan = cut.refit(bad.positions, bad.indices);
+    CHECK(nan.error().code == ErrorCode::non_finite);
+    CHECK(nan.error().item == 7);
+    bad = mesh;
+    bad.indices.resize(bad.indices.size() - 3);
+    CHECK(cut.refit(bad.positions, bad.indices).error().code == ErrorCode::invalid_argument);
+    bad = mesh;
+    bad.indices[5] = static_cast<std::uint32_t>(mesh.positions.size());
+    CHECK(cut.refit(bad.positions, bad.indices).error().item == 5);
+    CHECK(ClusteredMesh().refit(mesh.positions, mesh.indices).error().code == ErrorCode::invalid_argument);
+    CHECK(ClusteredMesh().refit({}, {}).error().code == ErrorCode::empty);
+    CHECK(same(cut, before));
+    CHECK(cut.identity() == before.identity());
+}
+
 // Every vertex of every triangle has a place of its own.
 TriangleMesh unwelded(const TriangleMesh& mesh) {
     TriangleMesh result;
@@ -165,7 +261,7 @@ TEST_CASE("a mesh that is lent is read in place: the same answers, with a fracti
             CHECK(in_order == permuted);
             // The same of the mesh as it was cut: the order stays.
             ClusteredMesh as_cut = own;
-            REQUIRE(as_cut.lend(mesh.positions, mesh.indices, depth::IndexOrder::original));
+            REQUIRE(as_cut.lend(mesh.positions, mesh.indices, depth::depth::IndexOrder::original));
             CHECK(std::ranges::equal(as_cut.triangle_order(), own.triangle_order()));
             CHECK(as_cut.memory() < own.memory() - 12 * 41 * 41);
             CHECK(seen_from_around(as_cut, DepthRange::zero_to_one) == seen_from_around(own, DepthRange::zero_to_one));
@@ -176,7 +272,7 @@ TEST_CASE("a mesh that is lent is read in place: the same answers, with a fracti
             REQUIRE(as_cut.lend(mesh.positions, permuted));
             CHECK(as_cut.triangle_order().empty());
             CHECK(as_cut.memory() == cut.memory());
-            CHECK(as_cut.lend(mesh.positions, mesh.indices, depth::IndexOrder::original).error().code ==
+            CHECK(as_cut.lend(mesh.positions, mesh.indices, depth::depth::IndexOrder::original).error().code ==
                   ErrorCode::invalid_argument);
             const double given = double(mesh.positions.size() * 12 + mesh.indices.size() * 4);
             if (most == 64) CHECK(double(cut.memory()) < (welded ? 0.16 : 0.08) * given);
@@ -209,7 +305,8 @@ TEST_CASE("only the mesh that was cut can be lent") {
     cut.permute(mesh.indices, permuted);
     CHECK(cut.lend(mesh.positions, std::span(permuted).first(3)).error().code == ErrorCode::invalid_argument);
     CHECK(cut.lend(mesh.positions, mesh.indices).error().code == ErrorCode::invalid_argument);
-    CHECK(cut.lend(mesh.positions, permuted, depth::IndexOrder::original).error().code == ErrorCode::invalid_argument);
+    CHECK(cut.lend(mesh.positions, permuted, depth::depth::IndexOrder::original).error().code ==
+          ErrorCode::invalid_argument);
     CHECK(cut.lend(std::span(mesh.positions).first(3), permuted).error().code == ErrorCode::out_of_range);
     mesh.positions[permuted[100]].y += 1.0f;
     CHECK(cut.lend(mesh.positions, permuted).error().code == ErrorCode::invalid_argument);

@@ -296,6 +296,8 @@ typedef struct crofton_closest_object {
     uint64_t user;
     double distance;
     double on_shape[3], on_object[3]; /* nearest points; if they overlap, any common point */
+    uint32_t triangle;                /* at on_object, of the object's mesh or its shape's surface, or CROFTON_NONE */
+    uint32_t child;                   /* of a compound shape; else 0 */
 } crofton_closest_object;
 
 typedef struct crofton_object_pair {
@@ -333,10 +335,21 @@ typedef struct crofton_shape_hit {
     double time;
     double normal[3];  /* unit, from the shape to the object */
     double point[3];   /* on the object's surface */
-    uint32_t triangle; /* of a surface */
+    uint32_t triangle; /* of the object's mesh or its shape's surface, or CROFTON_NONE */
     uint32_t result;   /* a crofton_cast_result; unresolved: it meets nothing before `time` */
     double distance;   /* gap at that time; negative: how deep they overlap, from the start */
+    uint32_t child;    /* of a compound shape; else 0 */
 } crofton_shape_hit;
+
+/* Where a shape touches an object: the points of one direction. */
+typedef struct crofton_object_manifold {
+    crofton_object object;
+    uint64_t user;
+    double normal[3]; /* unit, from the shape to the object */
+    double depth;     /* of the deepest point; negative: a gap */
+    uint32_t point_count;
+    crofton_shape_point points[CROFTON_MAX_MANIFOLD_POINTS];
+} crofton_object_manifold;
 
 /* An object's data; box and transform as of the last update. */
 typedef struct crofton_object_info {
@@ -401,11 +414,15 @@ CROFTON_API crofton_status crofton_world_raycast_any(const crofton_world* world,
 
 CROFTON_API crofton_status crofton_found_create(crofton_found** found);
 CROFTON_API crofton_status crofton_found_destroy(crofton_found* found);
-/* Return what the last query with `found` has found; valid until the next. */
+/* Return what the last query with `found` has found; valid until the next. Shape hits are hits[0].size bytes apart. */
 CROFTON_API crofton_status crofton_found_objects(const crofton_found* found, const crofton_object_ref** objects,
                                                  size_t* count);
 CROFTON_API crofton_status crofton_found_hits(const crofton_found* found, const crofton_object_hit** hits,
                                               size_t* count);
+CROFTON_API crofton_status crofton_found_shape_hits(const crofton_found* found, const crofton_shape_hit** hits,
+                                                    size_t* count);
+CROFTON_API crofton_status crofton_found_manifolds(const crofton_found* found,
+                                                   const crofton_object_manifold** manifolds, size_t* count);
 
 /* Lists the nearest hit of each object that the ray hits, in order of t, then of index. Read it by crofton_found_hits.
  */
@@ -434,6 +451,17 @@ CROFTON_API crofton_status crofton_world_contacts(const crofton_world* world, co
 CROFTON_API crofton_status crofton_world_cast(const crofton_world* world, const crofton_placed* probe,
                                               const crofton_motion* motion, const crofton_cast_options* options,
                                               const crofton_query_filter* filter, crofton_shape_hit* hit);
+/* Lists the first hit of each object that the moving shape meets, in order of time, then of index. Read it by
+ * crofton_found_shape_hits. */
+CROFTON_API crofton_status crofton_world_cast_all(const crofton_world* world, const crofton_placed* probe,
+                                                  const crofton_motion* motion, const crofton_cast_options* options,
+                                                  const crofton_query_filter* filter, crofton_found* found);
+/* Lists where a shape, which need not be an object, touches the objects, in order of index; of one object the deepest
+ * manifold comes first. Objects that lie flush push as their union does. Read it by crofton_found_manifolds. `options`
+ * or NULL. CROFTON_UNSUPPORTED: a half-space. */
+CROFTON_API crofton_status crofton_world_manifolds(const crofton_world* world, const crofton_placed* probe,
+                                                   const crofton_manifold_options* options,
+                                                   const crofton_query_filter* filter, crofton_found* found);
 
 /* Occluders: geometry by which a mesh's objects hide others. Guide: docs/occlude.md. */
 

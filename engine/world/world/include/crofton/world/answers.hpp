@@ -214,6 +214,8 @@ struct ClosestObject {
     std::uint64_t user = 0;
     double distance = 0.0;
     glm::dvec3 on_shape{0.0}, on_object{0.0};  // a nearest point of each; if they overlap, any common point
+    std::uint32_t triangle = kNoTriangle;      // of the object's mesh, or of the shape's surface, at on_object
+    std::uint32_t child = 0;                   // which child, if the object's shape is a compound (convex::PartId)
 };
 
 struct ObjectPair {
@@ -249,11 +251,12 @@ struct ShapeHit {
     ObjectHandle object;
     std::uint64_t user = 0;
     double time = 0.0;
-    glm::dvec3 normal{0.0};      // unit, from the shape to the object
-    glm::dvec3 point{0.0};       // on the object's surface
-    std::uint32_t triangle = 0;  // of a surface
-    bool resolved = true;        // false: the shape meets nothing up to `time`; later contacts are unknown
-    double distance = 0.0;       // the gap at `time`; negative: the depth by which they overlapped at the start
+    glm::dvec3 normal{0.0};                // unit, from the shape to the object
+    glm::dvec3 point{0.0};                 // on the object's surface
+    std::uint32_t triangle = kNoTriangle;  // of the object's mesh, or of the shape's surface
+    bool resolved = true;                  // false: the shape meets nothing up to `time`; later contacts are unknown
+    double distance = 0.0;    // the gap at `time`; negative: the depth by which they overlapped at the start
+    std::uint32_t child = 0;  // which child, if the object's shape is a compound (convex::PartId)
 };
 
 }  // namespace crofton
