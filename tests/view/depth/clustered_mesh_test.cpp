@@ -261,7 +261,7 @@ TEST_CASE("a mesh that is lent is read in place: the same answers, with a fracti
             CHECK(in_order == permuted);
             // The same of the mesh as it was cut: the order stays.
             ClusteredMesh as_cut = own;
-            REQUIRE(as_cut.lend(mesh.positions, mesh.indices, depth::depth::IndexOrder::original));
+            REQUIRE(as_cut.lend(mesh.positions, mesh.indices, depth::IndexOrder::original));
             CHECK(std::ranges::equal(as_cut.triangle_order(), own.triangle_order()));
             CHECK(as_cut.memory() < own.memory() - 12 * 41 * 41);
             CHECK(seen_from_around(as_cut, DepthRange::zero_to_one) == seen_from_around(own, DepthRange::zero_to_one));
@@ -272,7 +272,7 @@ TEST_CASE("a mesh that is lent is read in place: the same answers, with a fracti
             REQUIRE(as_cut.lend(mesh.positions, permuted));
             CHECK(as_cut.triangle_order().empty());
             CHECK(as_cut.memory() == cut.memory());
-            CHECK(as_cut.lend(mesh.positions, mesh.indices, depth::depth::IndexOrder::original).error().code ==
+            CHECK(as_cut.lend(mesh.positions, mesh.indices, depth::IndexOrder::original).error().code ==
                   ErrorCode::invalid_argument);
             const double given = double(mesh.positions.size() * 12 + mesh.indices.size() * 4);
             if (most == 64) CHECK(double(cut.memory()) < (welded ? 0.16 : 0.08) * given);
@@ -305,8 +305,7 @@ TEST_CASE("only the mesh that was cut can be lent") {
     cut.permute(mesh.indices, permuted);
     CHECK(cut.lend(mesh.positions, std::span(permuted).first(3)).error().code == ErrorCode::invalid_argument);
     CHECK(cut.lend(mesh.positions, mesh.indices).error().code == ErrorCode::invalid_argument);
-    CHECK(cut.lend(mesh.positions, permuted, depth::depth::IndexOrder::original).error().code ==
-          ErrorCode::invalid_argument);
+    CHECK(cut.lend(mesh.positions, permuted, depth::IndexOrder::original).error().code == ErrorCode::invalid_argument);
     CHECK(cut.lend(std::span(mesh.positions).first(3), permuted).error().code == ErrorCode::out_of_range);
     mesh.positions[permuted[100]].y += 1.0f;
     CHECK(cut.lend(mesh.positions, permuted).error().code == ErrorCode::invalid_argument);

@@ -239,10 +239,10 @@ TEST_SUITE("world/probes") {
             CHECK(hits.size() == at);
             const auto first = world.cast(probe, pose, motion, {.early_out = early_out}).value();
             REQUIRE(first.has_value() == !hits.empty());
-            if (first) CHECK(first->time == hits[0].time);
+            if (first) CHECK(first->time == doctest::Approx(hits[0].time).epsilon(1e-9));
             hits_in_all += static_cast<int>(hits.size());
         }
-        CHECK(hits_in_all > 600);
+        CHECK(hits_in_all > 400);
     }
 
     TEST_CASE("a shape that slides on flush objects meets none of their sides, and what overlaps is met at once") {
