@@ -150,8 +150,8 @@ export class World extends Owned {
         words.set(halvesOf(user), first + 2);
         if (box || sphere) writeBound(memory, parts, { box, sphere }), words[first + 4] = parts;
         if (transform) words[first + 5] = writeTransform(memory, parts + 160, transform);
-        if (mesh) giveHandle(memory, mesh, 'mesh', at + 32), words[first + 6] = 1;
-        if (node) giveHandle(memory, node, 'node', at + 40), words[first + 7] = 1;
+        if (mesh) giveHandle(memory, mesh, 'mesh', at + 32, item), words[first + 6] = 1;
+        if (node) giveHandle(memory, node, 'node', at + 40, item), words[first + 7] = 1;
         words.set([layersOf(layers), layersOf(collidesWith), occludes ? 1 : 0, onlyOccludes ? 1 : 0, shape ? handleOf(memory, shape, 'Shape', item) : 0,
             hidden ? 1 : 0], first + 12);
     }
@@ -206,7 +206,7 @@ export class World extends Owned {
         const { memory, handle } = this, first = handleOf(memory, boxes, 'Boxes');
         if (boxes.length !== checkRecords(objects, 'objects').length) throw failure(1, `there are ${objects.length} objects and ${boxes.length} boxes`);
         memory.lend([new Uint8Array(8 * objects.length)], (at) => {
-            objects.forEach((object, i) => giveHandle(memory, object, 'object', at + 8 * i));
+            objects.forEach((object, i) => giveHandle(memory, object, 'object', at + 8 * i, i));
             memory.call('world_set_boxes', handle, at, 0, first, 0, objects.length);
         });
     }
@@ -216,7 +216,7 @@ export class World extends Owned {
         if (transforms.length !== 16 * count) throw failure(1, `${count} transforms have 16 numbers each, and there are ${transforms.length}`);
         memory.lend([new Uint8Array(8 * count), new Uint8Array(96 * count)], (at, poses) => {
             handles.forEach((one, i) => {
-                giveHandle(memory, one, kind, at + 8 * i);
+                giveHandle(memory, one, kind, at + 8 * i, i);
                 writeTransform(memory, poses + 96 * i, transforms.subarray(16 * i, 16 * i + 16));
             });
             memory.call(`world_${name}`, handle, at, 0, poses, 0, count);

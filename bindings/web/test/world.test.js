@@ -44,6 +44,7 @@ for (const build of BUILDS) {
         assert.throws(() => world.addMany(bad), refused('not finite', 1));
         assert.throws(() => world.addMany([many[0], {}]), refused('invalid argument', 1));
         assert.throws(() => world.addMany([many[0], 7]), refused('invalid argument', 1));
+        assert.throws(() => world.addMany([many[0], { mesh: 3 }]), refused('bad handle', 1));
         assert.equal(world.count, 1000);
         assert.deepEqual(world.addMany([]), []);
         const added = world.add({ sphere: { center: [0, 0, 0], radius: 1 } });
