@@ -104,6 +104,9 @@ def test_a_folder_of_regions_is_opened(tmp_path):
         world.attach(region, file.origin)
     world.update()
     assert len(world) == sum(file.objects for file in files)
+    while waiting := world.statistics["occluders_waiting"]:
+        world.update()
+        assert world.statistics["occluders_waiting"] < waiting
     boxes_alone = files[0].open(triangles=False, occluders=False, collides_with=0, trust_contents=True)
     assert boxes_alone.bytes < files[0].open().bytes
     (tmp_path / files[0].name).write_bytes(b"no region")
