@@ -91,6 +91,7 @@ namespace Crofton {
         // Copies an answer of the library's.
         internal static T[] ToArray<T>(IntPtr first, UIntPtr count) where T : struct {
             var result = new T[(int)count];
+            if (result.Length == 0) return result;
             int size = Marshal.SizeOf(typeof(T));
             long total = (long)result.Length * size;
             var part = new byte[Math.Min(total, 1 << 16)];
