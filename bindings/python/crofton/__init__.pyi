@@ -354,6 +354,8 @@ class Contact:
     triangles: Array  # records: first, second, begin (3), end (3), normal (3)
     depths: Array
     points: Array
+    # records: position (3), depth, normal (3), began, kind_a, kind_b, feature_a, feature_b, child_a, triangle_a, child_b, triangle_b
+    shape_points: Array
 
 class Occluder:
     @staticmethod
@@ -424,8 +426,25 @@ class Region:
                 users: Optional[npt.ArrayLike] = None, layers: int = ..., collides_with: int = ...,
                 triangles: bool = True, occluders: bool = False, clusters: bool = False,
                 max_origin: float = 1e9) -> Region: ...
+    @staticmethod
+    def open(path: AnyPath, *, triangles: bool = True, occluders: bool = True, collides_with: int = ..., max_origin: float = 1e9,
+             trust_contents: bool = False) -> Region: ...
     bytes: int
+    bounds: Array
+    def mesh_of(self, place: int) -> Optional[int]: ...
+    def clusters_of(self, mesh: int) -> Optional[ClusteredMesh]: ...
     def __len__(self) -> int: ...
+
+class RegionFile:
+    name: str
+    origin: Vec3
+    bounds: Array
+    objects: int
+    bytes: int
+    def open(self, *, triangles: bool = True, occluders: bool = True, collides_with: int = ..., max_origin: float = 1e9,
+             trust_contents: bool = False) -> Region: ...
+
+def region_files(folder: AnyPath) -> list[RegionFile]: ...
 
 class World:
     def __init__(self, *, pairs: bool = True, contacts: bool = True, containment: bool = True,

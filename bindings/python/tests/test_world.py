@@ -596,3 +596,27 @@ def test_a_shape_that_is_no_object_is_cast_through_all_and_touches(world, cube):
         world.contact_manifolds(ball, margin=-1)
     with pytest.raises(ValueError, match="points"):
         world.contact_manifolds(ball, max_points=9)
+
+
+def test_points_of_shapes_name_their_features_and_parts(world):
+    floor = crofton.Shape.compound([(crofton.Shape.box((9, 1, 9)), at(0, -1, 0)), (crofton.Shape.sphere(1), at(0, 0, 50))])
+    cube = world.add(shape=crofton.Shape.box((1, 1, 1)), transform=at(0, 0.99, 0), user=1)
+    world.add(shape=floor, user=2)
+    world.update()
+    (contact,) = world.contacts
+    points = contact.shape_points
+    assert len(points) == 4 and points["began"].all()
+    np.testing.assert_array_equal(points["position"], contact.points)
+    np.testing.assert_array_equal(points["depth"], contact.depths)
+    np.testing.assert_allclose(points["normal"], [(0, -1, 0)] * 4, atol=1e-9)
+    # Corners of the cube, of which each has a number, on the floor's first child.
+    assert (points["kind_a"] == 0).all() and len(set(points["feature_a"])) == 4
+    assert (points["kind_b"] == 2).all() and (points["child_b"] == 0).all()
+    world.set_transform(cube, at(0.01, 0.99, 0))
+    world.update()
+    (later,) = world.contacts
+    assert not later.shape_points["began"].any()
+    assert set(later.shape_points["feature_a"]) == set(points["feature_a"])
+    world.set_transform(cube, at(0, 9, 0))
+    world.update()
+    assert len(world.contacts[0].shape_points) == 0

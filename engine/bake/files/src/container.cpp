@@ -147,7 +147,7 @@ Result<std::span<const std::byte>> Reader::find(std::string_view name, std::size
         if (section.element_size != element_size) return damaged({"section '", name, "' has elements of another size"});
         return file_.subspan(section.offset, section.size);
     }
-    return damaged({"section '", name, "' is missing"});
+    return damaged({"section '", name, "' is missing: is this a file of another kind?"});
 }
 
 }  // namespace crofton::bake

@@ -242,6 +242,15 @@ typedef struct crofton_region_options {
     double max_origin;
 } crofton_region_options;
 
+/* What a region holds. */
+typedef struct crofton_region_info {
+    size_t size;
+    uint64_t object_count;
+    uint64_t bytes;        /* of memory; occluders and clusters are not counted */
+    double min[3], max[3]; /* around all objects, relative to the origin; without objects min is infinite, max is its
+                              negative */
+} crofton_region_info;
+
 CROFTON_API crofton_region_object crofton_default_region_object(void);
 CROFTON_API crofton_region_options crofton_default_region_options(void);
 /* Prepares a region; call it on any thread. `options`, `jobs` or NULL. If an object or a mesh is refused,
@@ -251,6 +260,15 @@ CROFTON_API crofton_status crofton_region_prepare(const crofton_region_object* o
                                                   crofton_region** region);
 /* You may destroy a region at any time: a world keeps what it needs. */
 CROFTON_API crofton_status crofton_region_destroy(crofton_region* region);
+/* Fills a struct whose `size` is set. */
+CROFTON_API crofton_status crofton_region_get_info(const crofton_region* region, crofton_region_info* info);
+/* Sets *mesh to the place of an object's mesh among the region's, or to CROFTON_NONE if it has none.
+ * CROFTON_OUT_OF_RANGE: there is no such object. */
+CROFTON_API crofton_status crofton_region_mesh_of(const crofton_region* region, uint32_t place, uint32_t* mesh);
+/* Returns the clusters of a mesh, to which a view's triangles refer; valid as long as `region`. CROFTON_EMPTY: there is
+ * no such mesh, or it has no clusters. */
+CROFTON_API crofton_status crofton_region_clusters_of(const crofton_region* region, uint32_t mesh,
+                                                      crofton_clusters* clusters);
 /* Attaches a region: from the next update on, answers contain its objects, moved by `origin`. */
 CROFTON_API crofton_status crofton_world_attach(crofton_world* world, const crofton_region* region,
                                                 const double origin[3], crofton_attached_region* attached);
