@@ -144,11 +144,11 @@ fn meshes_touch_or_are_apart() {
 fn a_shape_that_is_no_object_is_cast_through_all_and_touches() {
     let mut world = World::new().unwrap();
     let objects: Vec<Object> = (0..3)
-        .map(|i| world.add_bound(&Bound::sphere([i as f64, 0.0, -5.0], 0.25), Some(ObjectOptions { user: i, ..Default::default() })).unwrap())
+        .map(|i| world.add(&Description::bound(Bound::Sphere { center: [f64::from(i), 0.0, -5.0], radius: 0.25 })).unwrap())
         .collect();
     world.update().unwrap();
     let capsule = Shape::capsule(0.25, 1.0).unwrap();
-    let at = |x| capsule.at(Transform::translation([x, 0.0, -5.0]));
+    let at = |x| capsule.at(Transform::at([x, 0.0, -5.0]));
     let motion = Motion { velocity: [-1.0, 0.0, 0.0], ..Default::default() };
     let long = CastOptions { duration: 9.0, ..Default::default() };
     let hits = world.cast_all(&at(4.0), &motion, &long, ALL_LAYERS).unwrap();
