@@ -329,8 +329,8 @@ typedef enum crofton_contact_phase {
 } crofton_contact_phase;
 
 /* Two objects that touch, or that have ended touching in this update; these have only the handles, which may be
- * stale. Shapes also touch up to the contact margin, and keep the face and points of the last update while no others
- * are deeper by 1e-4 of the pair's size. A pair that rests is not computed again. */
+ * stale. Shapes also touch up to the contact margin. Convex ones keep the face and points of the last update while they
+ * are as good within 1e-4 of the pair's size. A pair that rests is not computed again. */
 typedef struct crofton_object_contact {
     crofton_object_ref first, second; /* ordered as in crofton_object_pair */
     uint8_t phase;                    /* a crofton_contact_phase */

@@ -228,8 +228,9 @@ enum class ContactPhase : std::uint8_t { began, stayed, ended };
 // stale. A contact goes on if its objects gain or lose shapes. All points are valid until the next update.
 //
 // Two shapes also touch within WorldOptions::contact_margin. A point keeps its `memory`, which you may write, while its
-// id stays the same. A pair keeps the face and points of the last update while no others are deeper by 1e-4 of its size
-// (convex::contact_manifold), also where flush neighbours then decide. All else depends on the present objects alone.
+// id stays the same. A pair of convex shapes keeps the face and points of the last update while they are as good within
+// 1e-4 of its size (convex::contact_manifold). So its depth differs by that at most from a new World's, also where
+// flush neighbours decide. All else depends on the present objects alone.
 struct Contact {
     ObjectRef first, second;  // ordered as in ObjectPair; the first is shape a
     ContactPhase phase = ContactPhase::began;
