@@ -269,8 +269,19 @@ def lattice(scene):
     scene.eyes += [(0.0, 0.0, 0.02), (2.0, 0.0, -1.2)]
 
 
+def no_numbers(scene):
+    """A wall with corners that are NaN, infinite and beyond what can be placed, before a crowd."""
+    positions, indices = wall(9, 5, 10, 6)
+    positions[20], positions[33], positions[46] = (math.nan, 0, 0), (0, math.inf, 0), (3e38, 3e38, -3e38)
+    scene.put(scene.mesh(positions, indices))
+    scene.put(scene.mesh([(3e38 * x, y, z) for x, y, z in positions if abs(x) < 1], [0, 1, 2]), (0, 0, -1))
+    scene.crowd(150, (-5, -3, -15), (5, 3, -0.5))
+    scene.eyes += [(0.0, 0.0, 0.02)]
+
+
 SCENES = {make.__name__: make for make in (coplanar, fences, t_junctions, slivers, degenerate, dense, sizes,
-                                           through_near, inside, turned, leaves, needles, lattice)}
+                                           through_near, inside, turned, leaves, needles, lattice,
+                                           no_numbers)}
 
 
 def cameras(scene, origin, size):
