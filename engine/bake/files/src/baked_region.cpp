@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <crofton/bake/baked_region.hpp>
 #include <crofton/core/recovery.hpp>
+#include <crofton/core/stop_signal.hpp>
 #include <utility>
 
 namespace crofton::bake {
@@ -67,9 +68,15 @@ class Meshes {
 Result<Region> prepare(const BakedScene& scene, boxtree::BoxTree* tree, const BakedRegionOptions& options,
                        Executor& executor) {
     return detail::recover([&]() -> Result<Region> {
+        constexpr double kChecked = 0.2;  // of the time
+        const RegionOptions& asked = options.region;
+        detail::PartOfStop checking{asked.should_stop, asked.stop_user, 0.0, kChecked};
+        detail::PartOfStop preparing{asked.should_stop, asked.stop_user, kChecked, 1.0};
         if (tree != nullptr && !options.trust_contents)
-            if (auto valid = tree->validate(); !valid)
-                return fail(ErrorCode::parse, valid.error().item, {"stored ", valid.error().message});
+            if (auto valid = tree->validate(detail::PartOfStop::ask, &checking); !valid)
+                return valid.error().code == ErrorCode::cancelled
+                           ? detail::cancelled("region")
+                           : fail(ErrorCode::parse, valid.error().item, {"stored ", valid.error().message});
         const std::span<const InstanceRecord> instances = scene.instances();
         const std::span<const std::uint32_t> layers = scene.tree().layer_masks();
         const Vector<std::uint32_t> kinds = occluders_of_instances(scene, options);
@@ -89,6 +96,8 @@ Result<Region> prepare(const BakedScene& scene, boxtree::BoxTree* tree, const Ba
             object.transform = scene.nodes()[instances[i].node].world;
         }
         RegionOptions prepared = options.region;
+        prepared.should_stop = detail::PartOfStop::ask;
+        prepared.stop_user = &preparing;
         prepared.meshes = meshes.all();
         prepared.built = tree;
         return Region::prepare(objects, prepared, executor);
