@@ -81,9 +81,13 @@ Result<Region> prepare(const BakedScene& scene, boxtree::BoxTree* tree, const Ba
         const std::span<const std::uint32_t> layers = scene.tree().layer_masks();
         const Vector<std::uint32_t> kinds = occluders_of_instances(scene, options);
         Meshes meshes(scene, options);
-        Vector<RegionObject> objects(instances.size());
+        constexpr std::size_t kBetweenQuestions = 4096;
+        detail::StopSignal stop(detail::PartOfStop::ask, &checking);
+        Vector<RegionObject> objects;
+        objects.reserve(instances.size());
         for (std::uint32_t i = 0; i < instances.size(); ++i) {
-            RegionObject& object = objects[i];
+            if (i % kBetweenQuestions == 0 && stop.is_raised(1.0)) return detail::cancelled("region");
+            RegionObject& object = objects.emplace_back();
             object.user = i;
             object.layers = layers[i];
             object.collides_with = options.collides_with;
