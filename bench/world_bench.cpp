@@ -8,7 +8,8 @@
 //   bench_world --queries     queries among objects of which some move
 //   bench_world --bytes       bytes an object, as CSV
 //   bench_world --stacks      what an update of a thousand stacked crates costs, as shapes and as boxes
-//   bench_world --regions     a World of a thousand regions compared with one of a million objects
+//   bench_world --regions     a World of a thousand regions compared with one of a million objects; --regions=PART:
+//                             occluders, attaching, peers, jolt (if it is found), aging or town
 //   bench_world --growth      Worlds of regions against the number of objects, as CSV
 //   --frames=N                instead of 200
 //   --target=AVX2             with this instruction set
@@ -57,7 +58,7 @@ struct Options {
     bool churn = false, changes = false, queries = false, stacks = false, bytes = false, regions = false,
          growth = false;
     std::size_t spawns = 10'000'000, live = 20'000, part = 100;
-    std::string out;
+    std::string out, part_of_regions;
     std::regex filter{""};
 };
 
@@ -78,7 +79,7 @@ bool parse(int argc, char** argv, Options& options) {
         else if (key == "--bytes")
             options.bytes = true;
         else if (key == "--regions")
-            options.regions = true;
+            options.regions = true, options.part_of_regions = value;
         else if (key == "--growth")
             options.growth = true;
         else if (key == "--stacks")
@@ -147,7 +148,7 @@ int main(int argc, char** argv) {
     }
     if (options.regions) {
         std::printf("instruction set: %s\n", target);
-        crofton::bench::regions(options.frames);
+        crofton::bench::regions(options.frames, options.part_of_regions);
         return 0;
     }
     if (options.changes) {

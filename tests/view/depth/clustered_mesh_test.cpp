@@ -396,6 +396,83 @@ struct StoredBytes {
     }
 };
 
+// How many half edges vertices reach from the middle at most, in more digits than double has.
+long double reach_of(const ClusterBox& box, const std::vector<glm::vec3>& vertices) {
+    using Vec = std::array<long double, 3>;
+    const auto cross = [](const Vec& a, const Vec& b) {
+        return Vec{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+    };
+    const auto dot = [](const Vec& a, const Vec& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
+    std::array<Vec, 3> edges;
+    for (std::size_t k = 0; k < 3; ++k) edges[k] = {box.half_edges[k].x, box.half_edges[k].y, box.half_edges[k].z};
+    long double most = 0.0L;
+    for (const glm::vec3& p : vertices)
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec normal = cross(edges[(k + 1) % 3], edges[(k + 2) % 3]);
+            Vec from_center;
+            for (std::size_t i = 0; i < 3; ++i) {
+                const auto axis = static_cast<glm::length_t>(i);
+                from_center[i] = static_cast<long double>(p[axis]) - static_cast<long double>(box.center[axis]);
+            }
+            const long double share = std::abs(dot(from_center, normal) / dot(edges[k], normal));
+            most = share <= most ? most : share;
+        }
+    return most;
+}
+
+TEST_CASE("bytes are refused if and only if a box does not contain its triangles, or the mesh's box all of them") {
+    oracle::NearMisses random(19);
+    int taken = 0, refused = 0;
+    for (int round = 0; round < 60; ++round) {
+        TriangleMesh mesh = hills(4, 50.0f, 5.0f, random);
+        const auto away = static_cast<float>(std::pow(10.0, random.number(-3, 5)));
+        for (glm::vec3& p : mesh.positions) p += glm::vec3(away, 0.0f, -0.3f * away);
+        const ClusteredMesh cut =
+            ClusteredMesh::cut(mesh.positions, mesh.indices, {.max_triangles = round % 3 == 0 ? 1u : 7u}).value();
+        const std::size_t clusters = cut.clusters().size();
+        std::vector<std::vector<glm::vec3>> vertices(clusters + 1);
+        for (std::size_t c = 0; c < clusters; ++c)
+            for (std::uint32_t t = 0; t < 3 * cut.triangles_of(c); ++t) {
+                const std::uint32_t triangle = cut.triangle_order()[cut.clusters()[c].first_triangle + t / 3];
+                vertices[c].push_back(mesh.positions[mesh.indices[3 * std::size_t{triangle} + t % 3]]);
+                vertices[clusters].push_back(vertices[c].back());
+            }
+        const StoredBytes whole(cut);
+        REQUIRE_FALSE(whole.is_refused());
+        for (int change = 0; change < 100; ++change) {
+            // A bit of a box's centers, edges and exponent, or of the mesh's box.
+            StoredBytes forged = whole;
+            const bool of_all = random.index(6) == 0;
+            const std::size_t c = of_all ? clusters : random.index(static_cast<unsigned>(clusters));
+            const std::size_t begin = of_all ? StoredBytes::kHeader - 24 : whole.boxes + 32 * c;
+            const std::size_t word = begin + 4 * random.index(of_all ? 6 : 8);
+            forged.set(word, forged.word(word) ^ std::uint32_t{1} << random.index(24));
+            ClusterBox box;
+            if (of_all) {
+                glm::vec3 numbers[2];
+                std::memcpy(numbers, &forged.bytes[begin], sizeof numbers);
+                box.center = numbers[0];
+                for (glm::length_t k = 0; k < 3; ++k) box.half_edges[std::size_t(k)][k] = numbers[1][k];
+            } else {
+                ClusteredMesh::PackedBox packed;
+                std::memcpy(&packed, &forged.bytes[begin], sizeof packed);
+                box = packed.unpacked();
+            }
+            const long double reach = reach_of(box, vertices[c]);
+            CAPTURE(static_cast<double>(reach));
+            if (forged.is_refused()) {
+                ++refused;
+                CHECK_FALSE(reach < 1.0L - 0x1p-40L);
+            } else {
+                ++taken;
+                CHECK(reach <= 1.0L + 0x1p-55L);
+            }
+        }
+    }
+    CHECK(taken > 1000);
+    CHECK(refused > 1000);
+}
+
 TEST_CASE("bytes that are one off in a count, an index or a sign are refused, though all lists have that length") {
     oracle::NearMisses random(13);
     const TriangleMesh mesh = hills(4, 50.0f, 5.0f, random);

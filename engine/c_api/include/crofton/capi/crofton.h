@@ -231,7 +231,7 @@ typedef struct crofton_region_object {
 typedef struct crofton_region_options {
     size_t size;
     uint64_t max_objects; /* 2^24; a region with more is refused */
-    /* Or NULL. Return 1 to stop (CROFTON_CANCELLED). It is not called while the tree is built. */
+    /* Or NULL. Return 1 to stop (CROFTON_CANCELLED). Called every few milliseconds. */
     int (*should_stop)(void* user, double share_done);
     void* stop_user;
     const crofton_mesh_data* meshes; /* that the objects share; or NULL */

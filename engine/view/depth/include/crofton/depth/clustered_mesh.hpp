@@ -148,8 +148,8 @@ class ClusteredMesh {
     // Returns bytes from which deserialise() makes an equal object without cutting again, on machines of the same byte
     // order; their number is a multiple of 4.
     [[nodiscard]] Vector<std::byte> serialise() const;
-    // Errors: bytes that are cut off, or whose numbers are out of range (parse; item = cluster). Make sure
-    // that the bytes belong to this mesh and are undamaged: boxes are not compared with the triangles.
+    // Errors: bytes that are cut off, whose numbers are out of range, or with a box that does not contain its triangles
+    // (parse; item = cluster). lend() finds out whether the bytes belong to a mesh.
     [[nodiscard]] static Result<ClusteredMesh> deserialise(std::span<const std::byte> bytes);
 
     // A box whose half edges are integers, up to 2^15, times a power of two. It contains the triangles exactly.
