@@ -26,16 +26,6 @@ void box_pairs_streaming(benchmark::State& state) {
     state.counters["refined"] = static_cast<double>(statistics.refined);
 }
 
-void packed_pairs(benchmark::State& state, std::size_t count) {
-    const BoxPairs pairs = random_pairs(count);
-    collide::PackedBoxes a, b;
-    a.pack(pairs.a, {});
-    b.pack(pairs.b, {});
-    std::vector<std::uint8_t> hits(pairs.a.size());
-    for (auto _ : state) benchmark::DoNotOptimize(collide::intersects(a, b, hits));
-    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(hits.size()));
-}
-
 void single_pairs(benchmark::State& state, BoxPairs (*pairs_of)(std::size_t)) {
     const BoxPairs pairs = pairs_of(4096);
     for (auto _ : state) {
@@ -145,10 +135,6 @@ void mesh_build(benchmark::State& state, const char* name, MeshBoxes boxes = Mes
 }
 
 BENCHMARK(box_pairs_streaming)->Name("sat/1M pairs from boxes/crofton")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(packed_pairs, streaming, 1'000'000)
-    ->Name("sat/1M pairs packed/crofton")
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(packed_pairs, cached, 4096)->Name("sat/4096 pairs packed/crofton")->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(single_pairs, random, random_pairs)
     ->Name("sat/4096 pairs one by one/crofton")
     ->Unit(benchmark::kMicrosecond);

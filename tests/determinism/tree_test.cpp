@@ -4,7 +4,6 @@
 #include <crofton/boxtree/structure.hpp>
 #include <crofton/mesh/mesh_parts.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
-#include <crofton/study/binary_tree.hpp>
 #include <oracle/tree_contents.hpp>
 
 #include "crowd.hpp"
@@ -44,20 +43,6 @@ boxtree::BoxTree lived_in_tree(Executor& executor) {
     return tree;
 }
 
-std::uint64_t visit_trees() {
-    Digest digest;
-    const std::vector<Obb> boxes = crowd(400, 0.0, 23);
-    for (const auto split : {study::Split::median, study::Split::nested})
-        for (const bool oriented : {false, true}) {
-            auto tree = *study::BinaryTree::build(boxes, {.split = split, .oriented = oriented});
-            for (const Obb& box : crowd(50, 0.0, 24)) (void)tree.insert(box);
-            digest.add(tree.cost());
-            tree.visit([&](const Obb& bound) { return digest.add(bound), study::Visit::descend; },
-                       [&](boxtree::ItemId item) { digest.add(item); });
-        }
-    return digest.value();
-}
-
 std::uint64_t mesh_tree() {
     const auto tree = *mesh::MeshTree::build(torus(60, 30, 0.2));
     Digest digest;
@@ -82,8 +67,7 @@ TEST_SUITE("determinism/tree") {
         check_everywhere(0x9527b118e17c7954, [](Executor& e) { return digest_of(lived_in_tree(e)); });
     }
 
-    TEST_CASE("binary trees and mesh trees are the same bits everywhere") {
-        check_everywhere(0x879d0052d0f2148, [](Executor&) { return visit_trees(); });
+    TEST_CASE("mesh trees are the same bits everywhere") {
         check_everywhere(0xd91afffd43f4f2ea, [](Executor&) { return mesh_tree(); });
     }
 

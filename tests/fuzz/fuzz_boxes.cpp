@@ -53,18 +53,12 @@ void check_batch(fuzz::Shapes& in) {
         pairs.push_back({static_cast<std::uint32_t>(in.below(static_cast<unsigned>(a.size()))),
                          static_cast<std::uint32_t>(in.below(static_cast<unsigned>(a.size())))});
     }
-    std::vector<std::uint8_t> hits(a.size()), packed(a.size()), paired(a.size());
+    std::vector<std::uint8_t> hits(a.size()), paired(a.size());
     collide::intersects(a, b, hits);
-    collide::PackedBoxes of_a, of_b;
-    const glm::dvec3 origin = in.point();
-    of_a.pack(a, origin);
-    of_b.pack(b, origin);
-    collide::intersects(of_a, of_b, packed);
     collide::intersects(std::span<const Obb>(a), pairs, paired);
     for (std::size_t i = 0; i < a.size(); ++i) {
         const bool meet = collide::intersects(a[i], b[i]);
         demand((hits[i] != 0) == meet, "a batch of boxes");
-        demand((packed[i] != 0) == meet, "packed boxes");
         demand((paired[i] != 0) == collide::intersects(a[pairs[i].first], a[pairs[i].second]), "pairs of a list");
     }
 }

@@ -1,9 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Puts deliberate faults into a copy of the engine, one at a time, and sees whether the tests notice.
+"""Puts deliberate faults into a copy of the engine, switched on one at a time, and sees whether the tests notice.
 
 tests/mutation/run.py [NAME|MODULE|FILE …]   those that a word selects (all without one); resumes where it was stopped
-tests/mutation/run.py --together [WORD …]    those of them that fit into one build: minutes instead of hours
 tests/mutation/run.py --sanitize [WORD …]    the same under the sanitizers, as .ci/run has it: for what writes beyond an array
 tests/mutation/run.py --seed 22 [WORD …]     other faults than those of the last draw
 tests/mutation/run.py --list                 what there is, nothing run
@@ -44,17 +43,14 @@ RULES = {
 class Scratch:
     """A copy of the tree with a build of its own."""
 
-    def __init__(self, work, jobs, clock, together, sanitize):
+    def __init__(self, work, jobs, sanitize):
         self.tree = work / "tree"
-        self.together = together
         self.sanitize = sanitize
-        self.build = self.tree / "build" / ("sanitized" if sanitize else "together" if together else "mutation")
+        self.build = self.tree / "build" / ("sanitized" if sanitize else "together")
         self.jobs = jobs
-        self.clock = clock
         self.times = {}
         self.processor = {}  # test: seconds
         self.cases = {}  # test: {case: seconds}
-        self.built = set()
 
     def copy(self):
         """Brings changed files over, and takes away what is no longer there: also what an ended run left mutated."""
@@ -79,9 +75,6 @@ class Scratch:
                    f"-DCROFTON_SHARED_DATA={data}", "-DCROFTON_DISCOVER_TESTS=OFF", "-DCROFTON_WERROR=ON"]
         if self.sanitize:  # a preset's values give way to those of the command line
             command += ["--preset", "asan", "-DCMAKE_BUILD_TYPE=RelWithDebInfo", "-DCROFTON_WERROR=OFF"]
-        if not self.together:  # a mutant should cost one small compilation
-            command += ["-DCROFTON_SIMD_TARGETS=AVX2", "-DCROFTON_WERROR=OFF",
-                        f"-DCMAKE_PROJECT_crofton_INCLUDE={self.tree}/tests/mutation/settings.cmake"]
         done = subprocess.run(command, capture_output=True, text=True, cwd=self.tree)
         if done.returncode:
             sys.exit(f"cmake cannot configure {self.tree}:\n{done.stdout}{done.stderr}")
@@ -132,40 +125,6 @@ class Scratch:
             elif "runtime error:" in line or "ERROR: AddressSanitizer" in line:
                 return f"a sanitizer: {line.rpartition('rror: ')[2]}"
         return case
-
-    def check_original(self, tests):
-        """Builds the tests and sees them pass on the true code: that is how long a mutant may take ten times."""
-        for test in tests:
-            if test in self.built:
-                continue
-            done = self.compile([test])
-            if done.returncode:
-                sys.exit(f"test_{test} does not build without a fault:\n{done.stdout[-4000:]}")
-            failed = self.run(test, 1200)
-            if failed:
-                sys.exit(f"the tests fail without a fault: {failed}")
-            self.built.add(test)
-            self.clock[test] = self.times[test]
-
-    def try_mutant(self, mutant):
-        """(status, by what or why) of one mutant; the file is as before afterwards."""
-        path = self.tree / mutant.file
-        original = path.read_text()
-        changed = mutant.apply(original)
-        self.check_original(mutant.tests)
-        try:
-            path.write_text(changed)
-            built = self.compile(mutant.tests)
-            if built.returncode:
-                errors = [line for line in built.stdout.splitlines() if "error" in line]
-                return "invalid", errors[0][-200:] if errors else "does not build"
-            for test in mutant.tests:
-                failed = self.run(test, 30 + 10 * self.clock[test])
-                if failed:
-                    return "caught", failed
-            return "survived", ""
-        finally:
-            path.write_text(original)
 
 
 def all_mutants(seed=SEED):
@@ -228,7 +187,7 @@ class Known:
 
 def report(mutants, known):
     """The table, and whether nothing survives."""
-    columns = ("caught", "survived", "invalid", "untried")
+    columns = ("caught", "survived", "untried")
     rows, survivors, stale = {}, [], []
     for mutant in mutants:
         row = rows.setdefault(mutant.module, dict.fromkeys(columns, 0))
@@ -246,7 +205,7 @@ def report(mutants, known):
         score = f"{100 * row['caught'] / judged:.1f} %" if judged else "–"
         print(f"| {name} | {judged} | {row['caught']} | {row['survived']} | {score} |")
     total = rows["all"]
-    print(f"Not judged: {total['invalid']} do not build, {total['untried']} are not tried yet.")
+    print(f"Not judged: {total['untried']} are not tried yet, or do not compile in the common build.")
     if stale:
         print(f"Of these were judged before their tests or files changed: {', '.join(stale)}")
     for mutant in survivors:
@@ -260,14 +219,12 @@ def main():
     parser.add_argument("--list", action="store_true", help="print the mutants and end")
     parser.add_argument("--report", action="store_true", help="print what is known and end")
     parser.add_argument("--fresh", action="store_true", help="forget earlier results of those selected")
-    parser.add_argument("--together", action="store_true", help="only those that fit into one build, switched on in turn")
-    parser.add_argument("--sanitize", action="store_true", help="--together, under the sanitizers")
+    parser.add_argument("--sanitize", action="store_true", help="under the sanitizers")
     parser.add_argument("--seed", type=int, default=SEED, help=f"draw others than those of seed {SEED}")
     parser.add_argument("--minutes", type=float, default=1e9, help="begin no mutant after so long")
     parser.add_argument("--work", type=Path, default=ROOT / "build" / "mutation", help="folder of the copy and the results")
     parser.add_argument("-j", "--jobs", type=int, default=2, help="compilations, or mutants, at a time")
     options = parser.parse_args()
-    options.together |= options.sanitize
     mutants = every = all_mutants(options.seed)
     if options.select:
         chosen = lambda m: any(w in (m.module, m.file) or m.name.startswith(w) for w in options.select)
@@ -285,21 +242,10 @@ def main():
         for mutant in mutants:
             known.all.pop(mutant.name, None)
     if not options.report:
-        scratch = Scratch(options.work.resolve(), options.jobs, {}, options.together, options.sanitize)
+        scratch = Scratch(options.work.resolve(), options.jobs, options.sanitize)
         scratch.copy()
         scratch.configure()
-        started = time.monotonic()
-        todo = [m for m in mutants if known.get(m) is None]
-        if options.together:
-            try_together(scratch, every, todo, known, options.minutes, options.jobs)
-            return 0 if report(mutants, known) else 1
-        for number, mutant in enumerate(sorted(todo, key=lambda m: (m.file.endswith("hpp"), m.tests, m.file)), 1):
-            if time.monotonic() - started > 60 * options.minutes:
-                break
-            begun = time.monotonic()
-            status, by = scratch.try_mutant(mutant)
-            known.put(mutant, status, by, time.monotonic() - begun)
-            print(f"{number}/{len(todo)} {status}: {mutant.name} {by} ({time.monotonic() - begun:.0f} s)", flush=True)
+        try_together(scratch, every, [m for m in mutants if known.get(m) is None], known, options.minutes, options.jobs)
     return 0 if report(mutants, known) else 1
 
 

@@ -2,7 +2,7 @@
 """Many mutants in one build: each is switched on by the environment, so that a module is compiled once for all of them.
 
 Kernels and headers too. The build is that of users: tests and untouched sources come from a compiler cache, if there is
-one. What does not compile so (a place that must be constant) is left to run.py one by one.
+one. What does not compile so (a place that must be constant) is not judged.
 """
 import os
 import re
@@ -68,7 +68,7 @@ class Together:
             (self.scratch.tree / file).write_text(text)
 
     def build(self, tests):
-        """Compiles; a mutant on a line with an error is left to be tried alone."""
+        """Compiles; a mutant on a line with an error is left out."""
         for file in {*self.by_file, *self.kernels}:
             self._write(file)
         for _ in range(8):

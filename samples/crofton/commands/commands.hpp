@@ -5,19 +5,17 @@
 
 namespace crofton::cli {
 
+void add_factors_command(CommandLine& line);
 void add_fit_command(CommandLine& line);
 void add_bake_command(CommandLine& line);
-void add_bounds_command(CommandLine& line);
 void add_collide_command(CommandLine& line);
 void add_frames_command(CommandLine& line);
 void add_hierarchy_command(CommandLine& line);
-void add_lines_command(CommandLine& line);
 void add_measure_command(CommandLine& line);
 void add_merge_command(CommandLine& line);
 void add_pvs_command(CommandLine& line);
 void add_radiosity_command(CommandLine& line);
 void add_triangulate_command(CommandLine& line);
-void add_triangulations_command(CommandLine& line);
 void add_verify_command(CommandLine& line);
 void add_view_command(CommandLine& line);  // where GLFW and Dear ImGui are installed
 
@@ -38,16 +36,11 @@ inline constexpr StudyCommand kMerge{"merge", "Merge the parts of a bake that ra
 inline constexpr StudyCommand kVerify{"verify", "Check the mathematical claims behind Crofton, one row each", false};
 inline constexpr StudyCommand kMeasure{
     "measure", "Test Crofton's formula on a mesh: area, volume and curvature, exact and by lines", true};
-inline constexpr StudyCommand kLines{"lines", "Compare methods to draw global lines through a scene", true};
+inline constexpr StudyCommand kFactors{"factors", "Form factors by global lines, of standard pairs or of scenes", true};
 inline constexpr StudyCommand kHierarchy{
     "hierarchy", "Chains of plane bounds, each the best under the ones before it, as in the paper", true};
 inline constexpr StudyCommand kRadiosity{"radiosity",
                                          "Light a scene by global lines and bake the light into vertex colours", true};
-inline constexpr StudyCommand kBounds{"bounds", "Compare spheres, boxes and k-DOPs around meshes by what they cost",
-                                      true};
-inline constexpr StudyCommand kTriangulations{
-    "triangulations", "Compare methods of triangulation by what they cost to cull and draw", true};
-inline constexpr StudyCommand kStudyCommands[] = {kMerge,  kVerify,    kMeasure,        kLines,
-                                                  kBounds, kHierarchy, kTriangulations, kRadiosity};
+inline constexpr StudyCommand kStudyCommands[] = {kMerge, kVerify, kMeasure, kFactors, kHierarchy, kRadiosity};
 
 }  // namespace crofton::cli

@@ -45,7 +45,7 @@ struct FramesOptions {
     std::uint32_t instances = 0;
     std::uint64_t seed = 1;
     unsigned threads = 1;
-    bool draw = false, no_draw = false, no_seen = false, verify = false;
+    bool no_draw = false, no_seen = false, verify = false;
     bool occlude = false;
     double region_distance = 0.0;  // 0: by the regions' size
     bool real_time = false;
@@ -309,8 +309,7 @@ class FramesRun {
             drawing_ = std::move(*drawing);
             return {};
         }
-        if (options_.draw || !options_.output.png.empty() || drawing.error().code != ErrorCode::unavailable)
-            return drawing.error();
+        if (!options_.output.png.empty() || drawing.error().code != ErrorCode::unavailable) return drawing.error();
         print_to(stderr, "crofton: not drawing: %s\n", printable(drawing.error().message).c_str());
         return {};
     }
@@ -537,12 +536,9 @@ void add_frames_command(CommandLine& line) {
     command.option("--threads", options->threads, "Worker threads; 0: one per core")
         .whole_between(0, 256)
         .show_default();
-    const Option draw =
-        command.flag("--draw", options->draw, "Fail if nothing can be drawn, instead of continuing without pictures");
     command.flag("--no-seen", options->no_seen,
                  "Do not count the triangles that own a pixel, which takes another draw of each frame");
-    const Option no_draw =
-        command.flag("--no-draw", options->no_draw, "Do not draw; all counts are the CPU's").excludes(draw);
+    const Option no_draw = command.flag("--no-draw", options->no_draw, "Do not draw; all counts are the CPU's");
     command.flag("--verify", options->verify, "Check every frame by brute force; exit 1 on any mismatch");
     const Option json = command.option("--json", options->output.json, "Write everything as JSON; - for stdout")
                             .writable_file_or_stdout();

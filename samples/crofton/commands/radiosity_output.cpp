@@ -26,7 +26,7 @@ namespace crofton::cli {
 
 namespace {
 
-constexpr double kTolerance = 2e-4;  // metres between a vertex and the side it is meant to lie on
+constexpr double kOnSide = 2e-4;  // metres between a vertex and the side it is meant to lie on
 constexpr double kLeastTriangles = 50'000.0;
 constexpr float kMiddle = 0.30f;  // where the mean of the logarithm of the light goes
 constexpr float kWhite = 5.0f;    // the exposed light that just becomes white
@@ -113,7 +113,7 @@ Result<LitScene> lit_scene(const assets::FlatScene& scene, double edge, const st
         lengths = automatic_edges(scene.mesh);
         edge = lengths.edge;
     }
-    auto mended = radiosity::mend_t_junctions(scene.mesh, kTolerance);
+    auto mended = radiosity::mend_t_junctions(scene.mesh, kOnSide);
     if (!mended) return mended.error();
     auto refined = lengths.edge > 0.0 ? radiosity::refine(mended->mesh, radiosity::EdgeLength(lengths))
                                       : radiosity::refine(mended->mesh, edge);

@@ -10,10 +10,8 @@ int main(int argc, char** argv) {
     add_merge_command(line);
     add_verify_command(line);
     add_measure_command(line);
-    add_lines_command(line);
-    add_bounds_command(line);
+    add_factors_command(line);
     add_hierarchy_command(line);
-    add_triangulations_command(line);
     add_radiosity_command(line);
     return line.run(argc, argv);
 }

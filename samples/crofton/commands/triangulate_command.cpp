@@ -33,7 +33,7 @@ struct TriangulateOptions {
     double work = 0.0;       // in millions of steps, where it is given
     double memory = 2048.0;  // MiB
     double tolerance = -1.0, attribute_tolerance = 1e-4;
-    bool no_indices = false, has_tolerance = false, is_mesh_option_given = false, is_work_given = false;
+    bool has_tolerance = false, is_mesh_option_given = false, is_work_given = false;
     ReadOptions read;
 };
 
@@ -54,7 +54,7 @@ triangulate::TriangulateOptions limits_of(const TriangulateOptions& options, Met
     return limits;
 }
 
-Json to_json(const NamedPolygon& named, const Triangulation& result, double microseconds, bool no_indices) {
+Json to_json(const NamedPolygon& named, const Triangulation& result, double microseconds) {
     Json entry{{"name", named.name},
                {"vertices", named.polygon.points.size()},
                {"holes", named.polygon.ring_count() - 1},
@@ -63,7 +63,7 @@ Json to_json(const NamedPolygon& named, const Triangulation& result, double micr
                {"optimal", result.optimal},
                {"gap", std::isfinite(result.gap) ? Json(result.gap) : Json(nullptr)},
                {"microseconds", microseconds}};
-    if (!no_indices) entry["triangles"] = result.triangles;
+    entry["triangles"] = result.triangles;
     return entry;
 }
 
@@ -126,7 +126,7 @@ Result<int> run_polygons(const TriangulateOptions& options, Method method) {
                 totals.out_of_memory += method == Method::minimum_weight && !results[i].optimal &&
                                         !options.is_work_given && 1e-6 * time < options.seconds &&
                                         std::isfinite(options.seconds);
-                entries.push_back(to_json(polygons[i], results[i], time, options.no_indices));
+                entries.push_back(to_json(polygons[i], results[i], time));
             } else if (done.error().code == ErrorCode::cancelled) {
                 break;
             } else {
@@ -204,7 +204,7 @@ Result<int> run_triangulate(const TriangulateOptions& options) {
     if (!options.svg.empty())
         return fail(ErrorCode::invalid_argument, kNoItem, "--svg is for polygons: .poly, .json, .geojson, .wad");
     return run_meshes({options.file, options.method, limits_of(options, *method), options.json, options.out,
-                       options.tolerance, options.attribute_tolerance, options.no_indices, options.read});
+                       options.tolerance, options.attribute_tolerance, options.read});
 }
 
 constexpr const char* kTriangulateExamples =
@@ -221,7 +221,6 @@ constexpr const char* kTriangulateExamples =
     "\n"
     "Examples:\n"
     "  crofton triangulate county.geojson --svg county.svg          exact minimum weight, and a picture\n"
-    "  crofton triangulate glyphs.poly --no-indices --json -        weights and times only\n"
     "  crofton triangulate level.wad --map MAP01 --method delaunay  every sector of one level\n"
     "  crofton triangulate house.glb --out lighter.glb              the same house with shorter inner edges\n"
     "  crofton triangulate town --out town.glb                      the built-in town as a file\n";
@@ -260,9 +259,7 @@ void add_triangulate_command(CommandLine& line) {
                     "Largest deviation of texture coordinates, normals, colours, ... from one linear function of the "
                     "position within a patch; inf: no limit")
             .show_default();
-    const Option json =
-        command.option("--json", options->json, "Write results as JSON; - for stdout").writable_file_or_stdout();
-    command.flag("--no-indices", options->no_indices, "Leave the triangles out of the JSON").needs(json);
+    command.option("--json", options->json, "Write results as JSON; - for stdout").writable_file_or_stdout();
     command.option("--svg", options->svg, "Draw at most 400 of the polygons as SVG; - for stdout")
         .writable_file_or_stdout();
     command.option("--out", options->out, "Write the asset with its new triangles as .glb; - for stdout")

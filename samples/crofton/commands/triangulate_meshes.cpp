@@ -88,7 +88,7 @@ std::string label(const PrimitivePatches& p) {
            std::to_string(p.primitive);
 }
 
-Json patch_json(const PrimitivePatches& p, std::size_t number, bool no_indices) {
+Json patch_json(const PrimitivePatches& p, std::size_t number) {
     const triangulate::PatchResult& r = p.report.results[number];
     Json entry{{"name", p.name + "_" + std::to_string(p.primitive) + "_" + std::to_string(number)},
                {"primitive", p.primitive},
@@ -100,7 +100,6 @@ Json patch_json(const PrimitivePatches& p, std::size_t number, bool no_indices) 
                {"optimal", r.optimal},
                {"gap", std::isfinite(r.gap) ? Json(r.gap) : Json(nullptr)},
                {"microseconds", r.microseconds}};
-    if (no_indices) return entry;
     Json triangles = Json::array();
     for (const std::size_t t : r.triangles)
         triangles.push_back({p.indices[3 * t], p.indices[3 * t + 1], p.indices[3 * t + 2]});
@@ -117,12 +116,12 @@ void add_reasons(const PrimitivePatches& p, Json& reasons) {
 }
 
 // A mesh's primitives; `primitives` is not empty.
-Json mesh_json(const std::vector<const PrimitivePatches*>& primitives, bool no_indices) {
+Json mesh_json(const std::vector<const PrimitivePatches*>& primitives) {
     Sums sums;
     Json polygons = Json::array(), left_alone = Json::array(), errors = Json::array();
     for (const PrimitivePatches* p : primitives) {
         sums.add(*p);
-        for (std::size_t i = 0; i < p->report.results.size(); ++i) polygons.push_back(patch_json(*p, i, no_indices));
+        for (std::size_t i = 0; i < p->report.results.size(); ++i) polygons.push_back(patch_json(*p, i));
         add_reasons(*p, left_alone);
         if (p->error)
             errors.push_back(
@@ -176,7 +175,7 @@ void print_table(const ByMesh& meshes, const Sums& total, const std::vector<Prim
 
 Result<void> write_report(const MeshRun& run, const ByMesh& meshes, const Sums& total) {
     Json entries = Json::array();
-    for (const auto& primitives : meshes) entries.push_back(mesh_json(primitives, run.no_indices));
+    for (const auto& primitives : meshes) entries.push_back(mesh_json(primitives));
     Json summary = total.to_json();
     summary["meshes"] = meshes.size();
     return write_json(run.json, {{"file", assets::file_name(run.file)},

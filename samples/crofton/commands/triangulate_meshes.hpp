@@ -16,7 +16,6 @@ struct MeshRun {
     std::string json, out;
     double tolerance = -1.0;  // negative: a millionth of each mesh's size
     double attribute_tolerance = 1e-4;
-    bool no_indices = false;
     ReadOptions read;
 };
 

@@ -6,10 +6,7 @@
 #include <crofton/fit/fit.hpp>
 #include <crofton/measure/measure.hpp>
 #include <crofton/sampling/sampling.hpp>
-#include <crofton/study/bound_given_ancestors.hpp>
 #include <crofton/study/planar_bounds.hpp>
-#include <crofton/study/spatial_lines.hpp>
-#include <crofton/study/sphere_given_ancestors.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <numbers>
@@ -108,42 +105,6 @@ void box_optima(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
                                        "paper, section 3; theory.md section 2", 0.985, ratio, error));
         }
     }
-}
-
-// In space, by an adaptive quadrature of (4): the measures of the best sphere and box of the five points, given a
-// turned box around them.
-void bounds_in_space_given_ancestor(std::vector<VerifyRow>& rows) {
-    const std::span<const glm::dvec3> points(kPoints);
-    const auto around = fit::fit_oriented(points, glm::mat3(sampling::rotation({0.3, 0.6, 0.1})));
-    if (!around) return rows.push_back(untried_row("bounds given a turned box", "theory.md (4)"));
-    const study::ConvexBody ancestor = study::ConvexBody::box(*around);
-    const auto row = [&](const char* claim, double value, study::ConvexBody bound) {
-        const std::vector<study::ConvexBody> both = {ancestor, std::move(bound)};
-        const auto measured = study::measure_of_planes_hitting_all(both, {.max_cells = 100'000});
-        rows.push_back(measured ? computed_row(claim, "theory.md (4)", value, measured->value, 4e-3 * value)
-                                : untried_row(claim, "theory.md (4)"));
-    };
-    const auto sphere = study::sphere_given_ancestors(points, {&ancestor, 1});
-    if (!sphere) return rows.push_back(untried_row("the sphere that fewest planes hit", "theory.md (4)"));
-    row("the sphere that fewest planes hit together with an ancestor: its measure", sphere->value,
-        study::ConvexBody::sphere(sphere->sphere.center, sphere->sphere.radius));
-    const auto box = study::box_given_ancestors(points, {&ancestor, 1}, {.tolerance = 0.05, .max_cells = 5000});
-    if (!box) return rows.push_back(untried_row("the box that fewest planes hit", "theory.md (4)"));
-    row("the box that fewest planes hit together with an ancestor: its measure", box->value,
-        study::ConvexBody::box(box->box));
-    // Whatever the orientation, the certified bound is below.
-    double least = HUGE_VAL;
-    sampling::Random random(35, 0);
-    for (int i = 0; i < 300; ++i) {
-        const auto other = fit::fit_oriented(points, glm::mat3(sampling::rotation(random.point<3>())));
-        if (!other) continue;
-        const std::vector<study::ConvexBody> both = {ancestor, study::ConvexBody::box(*other)};
-        if (const auto measured = study::measure_of_planes_hitting_all(both, {.tolerance = 1e-3}))
-            least = std::min(least, measured->value);
-    }
-    const char* const claim = "no turned box has less than the certified bound (ratio)";
-    rows.push_back(std::isfinite(least) ? at_most_row(claim, "theory.md (4)", 1.0, box->lower_bound / least, 1e-3)
-                                        : untried_row(claim, "theory.md (4)"));
 }
 
 // Given its ancestor, a pentagon, this triangle's best rectangle has no side along one of its own.
@@ -268,7 +229,6 @@ void planar_optima(std::vector<VerifyRow>& rows) {
 std::vector<VerifyRow> bound_rows(const VerifyOptions& options) {
     std::vector<VerifyRow> rows;
     box_optima(options, rows);
-    bounds_in_space_given_ancestor(rows);
     bounds_given_ancestor(rows);
     planar_optima(rows);
     return rows;

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Formulas that no theorem's row calls: criteria of queries, figures of the plane, k-DOPs, preferred directions,
-// visibility in bits, light fields, binary trees and random cameras, against sums, integrals and cases by hand.
+// visibility in bits, light fields and random cameras, against sums, integrals and cases by hand.
 #include <algorithm>
 #include <cmath>
-#include <crofton/cull/cull.hpp>
 #include <crofton/lines/lines.hpp>
 #include <crofton/measure/measure.hpp>
 #include <crofton/sampling/sampling.hpp>
-#include <crofton/study/binary_tree.hpp>
 #include <crofton/study/k_dop.hpp>
 #include <crofton/study/light_field.hpp>
 #include <crofton/study/mutual_information.hpp>
@@ -148,27 +146,6 @@ void k_dop_rows(std::vector<VerifyRow>& rows) {
         rows.push_back(
             computed_row(name + "a cube: the cube's", source, second ? volume_of(*second) : std::nan(""), 8.0, 1e-9));
     }
-    const glm::dmat3 turn = sampling::rotation({0.3, 0.6, 0.8});
-    std::vector<glm::dvec3> turned;
-    for (const glm::dvec3& p : cube) turned.push_back(turn * p);
-    const auto directions = study::k_dop_directions(6);
-    const auto best = study::best_k_dop(turned, *directions, measure::minimal_area(), {.tolerance = 1e-3});
-    rows.push_back(computed_row("the best 6-DOP around a turned cube is the cube: its area", source,
-                                best ? best->value : std::nan(""), 24.0, 0.024));
-    rows.push_back(at_most_row("the lower bound of the best 6-DOP around a cube", source, 24.0 * (1.0 + 1e-12),
-                               best ? best->lower_bound : std::nan(""), 0.0));
-    const auto body =
-        best ? study::hull_around(best->bound, turned) : Result<convex::Hull>(fail(ErrorCode::empty, 0, ""));
-    std::uint64_t outside = 0;
-    for (const glm::dvec3& p : turned) {
-        // A point is outside where a half-space through it, along the nearest face, misses the hull.
-        Frustum beyond;
-        beyond.plane_count = 1;
-        beyond.planes[0] = {glm::normalize(p), -glm::length(p)};
-        outside += !body || cull::classify(beyond, *body) == cull::Verdict::outside;
-    }
-    rows.push_back(
-        none_row("corners of the cube that its k-DOP's body does not reach", source, turned.size(), outside));
 }
 
 void direction_rows(std::vector<VerifyRow>& rows) {
@@ -297,37 +274,6 @@ void light_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
         none_row("arrivals near the eye that are not on a wall, or pass too far away", source, arrivals.size(), off));
 }
 
-void binary_tree_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
-    const char* const source = "theory.md section 5";
-    sampling::Random random(options.seed, 61);
-    std::vector<Obb> pair(2);
-    pair[0].half_extents = pair[1].half_extents = glm::vec3(0.5f);
-    pair[1].center.x = 3.0;
-    const auto small = study::BinaryTree::build(pair);
-    // One inner node, 4 × 1 × 1: a + b + c.
-    rows.push_back(computed_row("cost of a binary tree of two boxes: the edges of the box around them", source,
-                                small ? small->cost() : std::nan(""), 6.0, 1e-5));
-    std::vector<Obb> boxes(2000);
-    for (Obb& box : boxes) {
-        box.center = 20.0 * (2.0 * glm::dvec3(random.uniform(), random.uniform(), random.uniform()) - 1.0);
-        box.axes = glm::mat3(sampling::rotation(random.point<3>()));
-        box.half_extents = glm::vec3(random.uniform(), random.uniform(), random.uniform());
-    }
-    const auto tree = study::BinaryTree::build(boxes);
-    std::uint64_t cases = 0, wrong = 0;
-    Vector<study::ItemId> ids;
-    for (int v = 0; tree && v < 20; ++v) {
-        const Camera camera =
-            sampling::random_camera(Camera{}, {glm::dvec3(-20.0), glm::dvec3(20.0)}, random.point<6>());
-        const cull::View view{*frustum_of(camera)};
-        study::find_visible(*tree, view, ids);
-        for (std::uint32_t i = 0; i < boxes.size(); ++i, ++cases)
-            wrong += std::binary_search(ids.begin(), ids.end(), i) !=
-                     (cull::classify(view.frustum, boxes[i]) != cull::Verdict::outside);
-    }
-    rows.push_back(none_row("boxes that a binary tree and a list see differently", source, cases, wrong));
-}
-
 void camera_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
     const char* const source = "theory.md section 2, uniform motions";
     const Aabb places{{-1.0, 2.0, 0.0}, {3.0, 5.0, 0.5}};
@@ -365,7 +311,6 @@ std::vector<VerifyRow> formula_rows(const VerifyOptions& options) {
     direction_rows(rows);
     information_rows(rows);
     light_rows(options, rows);
-    binary_tree_rows(options, rows);
     camera_rows(options, rows);
     return rows;
 }

@@ -18,8 +18,7 @@ namespace crofton::cli {
 // Culling: `trials` straddlers of each kind of bound at each camera offset from 0 to 1e7, asked by every path of the
 // culling. All counts, no chance.
 [[nodiscard]] std::vector<VerifyRow> verify_cull(const VerifyOptions& options);
-// Occlusion: `trials` rays of each kind at each camera offset from 0 to 1e7, to points of objects and through covered
-// pixels. All counts, no chance.
+// Occlusion: verify_occluded_scene of the town.
 [[nodiscard]] std::vector<VerifyRow> verify_occlude(const VerifyOptions& options);
 // Boxes that nearly touch, against exact numbers: no wrong answer in any class of gap and angle. Then the rows of
 // verify_convex.

@@ -86,7 +86,7 @@ TEST_SUITE("cli/faults") {
     TEST_CASE("limits are options of every sub-command that reads files, and the message names the option") {
         const std::string obj = scratch().file("large.obj");
         write_contents(obj, "v 0 0 0\nv 1 0 0\nv 1 1 1\nv 0 1 0\nf 1 2 3\nf 1 3 4\n");
-        for (const char* command : {"frames --no-draw", "bake -o /dev/null", "study radiosity", "study lines",
+        for (const char* command : {"frames --no-draw", "bake -o /dev/null", "study radiosity", "study factors",
                                     "study measure", "triangulate", "fit"}) {
             CAPTURE(command);
             const CliRun run = run_cli(std::string(command) + " '" + obj + "' --max-bytes 10");
@@ -209,7 +209,7 @@ TEST_SUITE("cli/faults") {
         }
         const std::string poly = folder + "/many.poly", json = folder + "/many.json";
         write_contents(poly, text);
-        CHECK(interrupt({"triangulate", poly, "--json", json, "--no-indices"}) == 130);
+        CHECK(interrupt({"triangulate", poly, "--json", json}) == 130);
         const auto document = nlohmann::json::parse(contents_of(json), nullptr, false);
         REQUIRE(document.is_object());
         CHECK(document["polygons"].size() == document["summary"]["polygons"].get<std::size_t>());

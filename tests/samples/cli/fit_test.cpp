@@ -267,37 +267,4 @@ TEST_SUITE("cli/fit") {
         CHECK(drawn.out.find("<svg") == 0);
         CHECK(drawn.out.find("square") != std::string::npos);
     }
-
-    TEST_CASE(
-        "study bounds: six kinds a mesh, none below the hull, one is the best, a far region asks for the cheap test") {
-        const std::string box = file("bounds.obj", turned_box());
-        CHECK(run_cli("study bounds --region 0.5" + box).status == 2);
-        const CliRun run = run_cli("study bounds --criterion area --json -" + box);
-        REQUIRE(run.status == 0);
-        const auto mesh = run.json().at("meshes")[0];
-        REQUIRE(mesh.at("bounds").size() == 6);
-        for (const auto& bound : mesh.at("bounds")) {
-            CHECK(number(bound, "over_hull") > -1e-6);
-            CHECK(number(bound, "lower_bound") <= number(bound, "value") * (1.0 + 1e-12));
-            CHECK(number(bound, "test_nanoseconds") > 0.0);
-        }
-        // Each view counts at most once, and a bound in another is never seen more often.
-        for (const auto& bound : mesh.at("bounds")) CHECK(number(bound, "passed") <= 4096.0);
-        CHECK(number(mesh.at("bounds")[2], "passed") <= number(mesh.at("bounds")[0], "passed") * 1.02);
-        CHECK(number(mesh.at("bounds")[5], "passed") > 0.0);
-        const CliRun own = run_cli("study bounds --directions '1,0,0;0,1,0;0,0,1;1,1,0' --json -" + box);
-        REQUIRE(own.status == 0);
-        CHECK(own.json().at("meshes")[0].at("bounds")[6].at("bound") == "own 8-DOP");
-        CHECK(run_cli("study bounds --directions '1,0;2' " + box).status == 2);
-        CHECK(run_cli("study bounds --directions '1,0,0;0,1,0' " + box).err.find("plane") != std::string::npos);
-        CHECK(run_cli("study bounds --directions '1,0,0;0,1,0;0,0,nan' " + box).status == 2);
-        // 4 × 2 × 1: the box itself, and the sphere around it.
-        CHECK(number(mesh.at("bounds")[2], "value") == doctest::Approx(28.0).epsilon(1e-5));
-        CHECK(number(mesh.at("bounds")[0], "value") == doctest::Approx(4.0 * 3.14159265 * 21.0 / 4.0).epsilon(1e-6));
-        const CliRun costly =
-            run_cli("study bounds --best --criterion area --region 1 --triangle-cost 1e9 --json -" + box);
-        const auto best = costly.json().at("meshes")[0].at("best");
-        CHECK(best != "sphere");
-        CHECK(best != "aligned box");
-    }
 }

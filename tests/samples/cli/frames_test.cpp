@@ -50,7 +50,6 @@ TEST_SUITE("cli/frames") {
             {scratch().file("index.obj"), "index.obj"},
             {scratch().file("empty.obj"), "empty.obj"},
             {scratch().file("far.gltf"), "node 0 'runaway' and all below it: left out: transform"},
-            {"town --draw --no-draw", "draw"},
             {"town --png pictures --no-draw", "--no-draw excludes --png"},
             {"town --occluders 10", "occlude"},
             {"town --occlude --occlusion-size 4x90", "4x90"},
@@ -76,13 +75,13 @@ TEST_SUITE("cli/frames") {
         CHECK(run_cli(kSmallTown + "--frames 1 --no-draw --json - --csv -").status == 2);
     }
 
-    TEST_CASE("without a Vulkan driver the frames run without drawing and say so, and --draw is an error") {
+    TEST_CASE("without a Vulkan driver the frames run without drawing and say so, and --png is an error") {
         const std::string no_driver = "VK_ICD_FILENAMES=/dev/null VK_DRIVER_FILES=/dev/null";
         const CliRun undrawn = run_cli(kSmallTown + "--frames 2 --json -", no_driver);
         CHECK(undrawn.status == 0);
         CHECK(says(undrawn.err, "not drawing"));
         CHECK(undrawn.json()["frames"][0]["gpu"].is_null());
-        CHECK(run_cli(kSmallTown + "--frames 2 --draw", no_driver).status == 2);
+        CHECK(run_cli(kSmallTown + "--frames 2 --png " + scratch().file("undrawn"), no_driver).status == 2);
     }
 
     TEST_CASE("the JSON has every documented field, and the counts agree with each other") {

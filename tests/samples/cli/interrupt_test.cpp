@@ -105,7 +105,7 @@ TEST_SUITE("cli/interrupt") {
             {"bake", "town", "--instances", "900000", "-o", out},
             {"frames", "town", "--instances", "1000000", "--no-draw", "--json", out},
             {"study", "measure", "room", "--lines", "1000000000000", "--json", out},
-            {"study", "lines", "room", "--blocks", "100000", "--json", out},
+            {"study", "factors", "room", "--blocks", "100000", "--json", out},
             {"study", "hierarchy", "--lines", "60000000000", "--json", out},
             {"verify", "--trials", "1000000000", "--json", out},
             {"triangulate", ring_file(), "--work-limit", "1e15", "--svg", out},

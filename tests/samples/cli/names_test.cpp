@@ -93,12 +93,12 @@ TEST_SUITE("cli/names") {
              {"frames --no-draw --frames 1 --strict " + gltf, "frames --no-draw --frames 1 --camera street " + gltf,
               "fit " + gltf, "triangulate " + gltf, "triangulate --out " + scratch().file("out.glb") + " " + gltf,
               "bake -o " + baked + " " + gltf, "frames --no-draw --frames 1 " + baked, "collide " + gltf + " " + gltf,
-              "study measure --lines 1000 " + gltf, "study lines --seconds 0.01 " + gltf, "study bounds " + gltf,
+              "study measure --lines 1000 " + gltf, "study factors --blocks 1 " + gltf,
               "study radiosity --runs 1 " + gltf})
             check_run(arguments);
 
         for (const std::string& arguments :
-             {"frames --no-draw --frames 1 " + gltf, "fit " + gltf, "triangulate " + gltf, "study bounds " + gltf}) {
+             {"frames --no-draw --frames 1 " + gltf, "fit " + gltf, "triangulate " + gltf}) {
             CAPTURE(arguments);
             const CliRun run = run_cli(arguments + " --json -");
             CHECK(is_safe(run.err));
@@ -213,7 +213,7 @@ TEST_SUITE("cli/names") {
         write_contents(name, "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 3 4\n");
         std::string quoted = "\"" + name + "\"";
         const std::string svg = scratch().file("fit.svg");
-        for (const char* command : {"fit ", "frames --no-draw --frames 1 ", "triangulate ", "study bounds ",
+        for (const char* command : {"fit ", "frames --no-draw --frames 1 ", "triangulate ",
                                     "study measure --lines 1000 ", "bake ", "frames --no-draw --camera "})
             check_run(command + quoted);
         check_run("fit " + quoted + " " + quoted);

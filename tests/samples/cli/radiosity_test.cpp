@@ -45,9 +45,7 @@ TEST_SUITE("cli/radiosity") {
         const std::string damaged = scratch().file("damaged.state");
         write_contents(damaged, "no checkpoint");
         refused("study radiosity " + box(kGlowing) + common() + "--checkpoint '" + damaged + "'", "damaged.state");
-        refused("study lines '" + scratch().file("missing.obj") + "'", "missing.obj");
         CHECK(run_cli("study radiosity").status == 2);
-        CHECK(run_cli("study lines " + box(kGlowing) + " --repeats 0").status == 2);
     }
 
     TEST_CASE("furnace: every method finds 1/(1 - reflectance), with the emission and reflectance of the file") {
@@ -161,22 +159,5 @@ TEST_SUITE("cli/radiosity") {
         CHECK(contents_of(picture).substr(1, 3) == "PNG");
         CHECK(run_cli(room + " --stored-lines 0").status == 2);
         CHECK(run_cli(room).json().at("light_field") == nullptr);
-    }
-
-    TEST_CASE("lines: every way to draw them with its figures, and the choice") {
-        const CliRun run = run_cli("study lines " + box(kGlowing) + " --blocks 2 --repeats 3 --json -");
-        CHECK(run.status == 0);
-        const auto report = run.json();
-        REQUIRE(report.is_object());
-        CHECK(report["surface"].get<double>() == doctest::Approx(22.0));
-        CHECK(report["chosen"] == "walls");
-        CHECK(report["methods"].size() == 8);
-        for (const auto& row : report["methods"]) {
-            for (const char* key : {"lines_per_second", "deviation", "wasted", "relative_error", "efficiency"})
-                CHECK(row.contains(key));
-            // Every line that meets the box crosses it twice.
-            CHECK(row["mean_crossings"].get<double>() ==
-                  doctest::Approx(2.0 * (1.0 - row["wasted"].get<double>())).epsilon(0.01));
-        }
     }
 }

@@ -109,8 +109,7 @@ TEST_SUITE("cli/triangulate") {
                 [[[0,0],[4,0],[4,4],[0,4],[0,0]], [[1,1],[2,1],[2,2],[1,1]]], [[[9,9],[10,9],[9,10],[9,9]]]]}},
             {"type": "Feature", "properties": {}, "geometry": {"type": "Point", "coordinates": [0, 0]}},
             {"type": "Feature", "geometry": null}]})");
-        const CliRun run =
-            run_cli("triangulate '" + scratch().file("map.geojson") + "' --json - --no-indices --method delaunay");
+        const CliRun run = run_cli("triangulate '" + scratch().file("map.geojson") + "' --json - --method delaunay");
         CHECK(run.status == 0);
         CHECK(run.err.find("Point") != std::string::npos);
         const auto polygons = run.json()["polygons"];
@@ -120,7 +119,7 @@ TEST_SUITE("cli/triangulate") {
         CHECK(polygons[0]["holes"] == 1);
         CHECK(polygons[0]["optimal"] == false);
         CHECK(polygons[0]["gap"].is_null());
-        CHECK_FALSE(polygons[0].contains("triangles"));
+        CHECK(polygons[0]["triangles"].size() == 7);
         CHECK(polygons[1]["vertices"] == 3);
     }
 
@@ -170,7 +169,7 @@ TEST_SUITE("cli/triangulate") {
             points += " " + std::to_string(r * std::cos(a)) + " " + std::to_string(r * std::sin(a));
         }
         write_contents(scratch().file("smooth.poly"), "P smooth 1\n" + std::to_string(kPoints) + points + "\n");
-        const std::string file = "triangulate '" + scratch().file("smooth.poly") + "' --no-indices --json - ";
+        const std::string file = "triangulate '" + scratch().file("smooth.poly") + "' --json - ";
         const CliRun cut = run_cli(file + "--work-limit 1");
         CHECK(cut.json()["polygons"][0]["optimal"] == false);
         const CliRun both = run_cli(file + "--work-limit 1 --time-limit 100");
@@ -185,29 +184,6 @@ TEST_SUITE("cli/triangulate") {
         CHECK(run.status == 0);
         CHECK(run.out.rfind("<svg", 0) == 0);
         CHECK(run.out.find("</svg>") != std::string::npos);
-    }
-
-    TEST_CASE("study triangulations gives all methods' weights, and predictions with what was measured") {
-        write_contents(scratch().file("l.poly"),
-                       "P a 2\n6 0 0 9 0 9 3 3 3 3 9 0 9\n4 1 1 2 1 2 2 1 2\nP small 1\n3 0 0 1 0 0 1\n");
-        const std::string file = "study triangulations '" + scratch().file("l.poly") + "' ";
-        const CliRun run = run_cli(file + "--frusta 20000 --json -");
-        CHECK(run.status == 0);
-        const auto document = run.json();
-        CHECK(document["polygons"] == 1);
-        REQUIRE(document["methods"].size() == 3);
-        const double minimum = document["methods"][2]["weight"];
-        for (const auto& row : document["methods"]) {
-            CHECK(row["weight"].get<double>() >= minimum);
-            for (const auto& [key, counted] :
-                 {std::pair("triangles_passed", "measured"), std::pair("pixel_quads", "met")}) {
-                const auto& of = row[key];
-                CHECK(std::fabs(of[counted].get<double>() - of["predicted"].get<double>()) <
-                      5.0 * of["standard_error"].get<double>());
-            }
-        }
-        CHECK(run_cli(file + "--frusta 0").status == 2);
-        CHECK(run_cli(file + "--least-vertices 100").status == 2);
     }
 
     TEST_CASE("a mesh is written as GLB with its patches lighter, and reads back") {

@@ -72,7 +72,6 @@ TEST_SUITE("cli/usage") {
             {"collide " + obj + " " + obj + " --hulls --mode cast --duration 3", "--velocity"},
             {"collide " + obj + " " + obj + " --velocity 1,0,0", "--mode cast"},
             {"collide " + obj + " " + obj + " --max-vertices 8", "--hulls"},
-            {"triangulate " + poly + " --no-indices", "--json"},
             {"triangulate " + poly + " --tolerance 0.1", "for meshes"},
             {"triangulate " + poly + " --attribute-tolerance 0.1", "for meshes"},
             {"fit " + obj + " --budget 1 --quality fast", "--quality exact"},
@@ -88,8 +87,7 @@ TEST_SUITE("cli/usage") {
             {"study radiosity room --shard 0/2", "--runs"},
             {"study radiosity room --stored-lines 9", "--light-field"},
             {"verify cull --map MAP01", "--scene"},
-            {"verify cull --instances 40", "--scene"},
-            {"study lines room --patches 9", "--factors"}};
+            {"verify cull --instances 40", "--scene"}};
         for (const auto& refused : cases) {
             const std::string& reason = refused.second;
             CAPTURE(refused.first);
@@ -127,7 +125,6 @@ TEST_SUITE("cli/usage") {
             {"study radiosity room --error nan", "--error: 'nan' is not a number above 0"},
             {"study radiosity room --sun -1", "--sun: '-1' is not a number from 0"},
             {"fit room --budget nan", "--budget: 'nan' is not a number from 0"},
-            {"study bounds room --region nan", "--region: 'nan' is not a number in [1 - 1e+09]"},
             {"view --no-window --after 1 --scale nan", "--scale: 'nan' is not a number in [0.5 - 8]"},
         };
         for (const auto& c : cases) {
@@ -145,7 +142,6 @@ TEST_SUITE("cli/usage") {
             const char *arguments, *option, *other;
         } cases[] = {
             {"collide room room --max-vertices 9", "--max-vertices", "--hulls"},
-            {"study lines room --patches 9", "--patches", "--factors"},
             {"study radiosity room --stored-lines 9", "--stored-lines", "--light-field"},
             {"pvs room --cells 1x1x1 --with-scene", "--with-scene", "--out"},
             {"pvs room --cells 1x1x1 --eye 1,1,1", "--eye", "--svg"},

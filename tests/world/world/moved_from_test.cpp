@@ -4,7 +4,6 @@
 #include <crofton/bake/baked_scene.hpp>
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/collide/broadphase.hpp>
-#include <crofton/collide/narrow_phase.hpp>
 #include <crofton/convex/query.hpp>
 #include <crofton/cull/bound_set.hpp>
 #include <crofton/cull/lights.hpp>
@@ -116,12 +115,6 @@ TEST_SUITE("world/moved_from") {
         CHECK(visible.size() == 0);
         cull::find_visible(tree, kept, {*frustum_of(Camera{})}, visible);
         CHECK(visible.size() == 2);
-
-        collide::PackedBoxes packed;
-        packed.pack(boxes, {});
-        const collide::PackedBoxes kept_packed(std::move(packed));
-        CHECK(kept_packed.boxes().size() == 2);
-        CHECK(packed.boxes().empty());
     }
 
     TEST_CASE("shadow receivers that were moved from need no caster") {

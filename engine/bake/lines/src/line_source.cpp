@@ -107,12 +107,4 @@ VisibilityComplexity visibility_complexity(const LineTracer& tracer, const LineS
     return result;
 }
 
-LineMethod choose_method(const LineTracer& tracer, std::uint64_t seed) {
-    constexpr std::uint64_t kTrial = 8;
-    const auto wasted = [&](LineMethod method) {
-        return visibility_complexity(tracer, LineSource(tracer.bounds(), method, seed), kTrial).wasted;
-    };
-    return wasted(LineMethod::walls) <= wasted(LineMethod::disc) ? LineMethod::walls : LineMethod::disc;
-}
-
 }  // namespace crofton::lines

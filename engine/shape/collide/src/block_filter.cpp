@@ -12,8 +12,8 @@
 // both sides of a comparison. Axes: with A and B the matrices of axes, R = AᵀB and C the cofactors of R, |C − ±R| ≤ 7.5
 // (δa + δb), since RᵀR is off the identity by at most 3 (δa + δb) in norm; the cross product of two stored axes is off
 // the third by at most 7.5 δ. Both the directions tested and the radii used therefore differ from the exact test's by
-// less than 32 (δa + δb) in each coefficient: a gap beyond ± (32 u + 32 (δa + δb)) S has its sign for certain. Centres
-// rounded to float add 4 u (|center a| + |center b|). What underflows is below 1e-36.
+// less than 32 (δa + δb) in each coefficient: a gap beyond ± (32 u + 32 (δa + δb)) S has its sign for certain. What
+// underflows is below 1e-36.
 //
 // Nearly parallel edges a and b, of sine s: their cross product is short, and its gap is lost in the error. But it
 // cannot separate boxes that overlap along all face normals by more than 2.5 s S, gaps taken along unit vectors. Let n
@@ -46,17 +46,9 @@ HWY_INLINE void put_bits(D d, hn::Mask<D> mask, std::size_t lane, std::uint32_t&
     bits |= simd::mask_bits(d, mask) << lane;
 }
 
-HWY_INLINE void filter_lanes(D d, const BoxBlock& a, const BoxBlock& b, std::size_t l, bool relative,
-                             BlockVerdict& verdict) {
+HWY_INLINE void filter_lanes(D d, const BoxBlock& a, const BoxBlock& b, std::size_t l, BlockVerdict& verdict) {
     const auto at = [&](const float* row) HWY_ATTR { return hn::Load(d, row + l); };
-    V cx = at(b.center[0]), cy = at(b.center[1]), cz = at(b.center[2]), size = hn::Set(d, 0.0f);
-    if (!relative) {
-        const V ax = at(a.center[0]), ay = at(a.center[1]), az = at(a.center[2]);
-        size = hn::Mul(hn::Set(d, 0.125f), hn::Add(sum_abs(ax, ay, az), sum_abs(cx, cy, cz)));
-        cx = hn::Sub(cx, ax);
-        cy = hn::Sub(cy, ay);
-        cz = hn::Sub(cz, az);
-    }
+    const V cx = at(b.center[0]), cy = at(b.center[1]), cz = at(b.center[2]);  // from a's
     V t[3], r[3][3], m[3][3], ha[3], hb[3];
     for (int k = 0; k < 3; ++k) {
         ha[k] = at(a.half[k]);
@@ -70,8 +62,7 @@ HWY_INLINE void filter_lanes(D d, const BoxBlock& a, const BoxBlock& b, std::siz
             m[i][j] = hn::Abs(r[i][j]);
         }
     }
-    size = hn::Add(size,
-                   hn::Add(sum_abs(cx, cy, cz), hn::Add(sum_abs(ha[0], ha[1], ha[2]), sum_abs(hb[0], hb[1], hb[2]))));
+    const V size = hn::Add(sum_abs(cx, cy, cz), hn::Add(sum_abs(ha[0], ha[1], ha[2]), sum_abs(hb[0], hb[1], hb[2])));
     const V share =
         hn::MulAdd(hn::Add(at(a.deviation), at(b.deviation)), hn::Set(d, kPerDeviation), hn::Set(d, kRounding));
     const V error = hn::MulAdd(size, share, hn::Set(d, 1e-36f));
@@ -110,13 +101,9 @@ HWY_INLINE void filter_lanes(D d, const BoxBlock& a, const BoxBlock& b, std::siz
     put_bits(d, hn::Lt(worst, hn::Neg(error)), l, verdict.hit);
 }
 
-void FilterBlocks(const BoxBlock* a, const BoxBlock* b, std::size_t count, bool relative, BlockVerdict* verdicts) {
+void FilterBlock(const BoxBlock& a, const BoxBlock& b, BlockVerdict& verdict) {
     const D d;
-    for (std::size_t i = 0; i < count; ++i) {
-        BlockVerdict verdict;
-        for (std::size_t l = 0; l < kBoxBlock; l += hn::Lanes(d)) filter_lanes(d, a[i], b[i], l, relative, verdict);
-        verdicts[i] = verdict;
-    }
+    for (std::size_t l = 0; l < kBoxBlock; l += hn::Lanes(d)) filter_lanes(d, a, b, l, verdict);
 }
 
 void MeasureDeviation(BoxBlock& block) {
@@ -143,11 +130,13 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace crofton::collide {
 
-HWY_EXPORT(FilterBlocks);
+HWY_EXPORT(FilterBlock);
 HWY_EXPORT(MeasureDeviation);
 
-void filter_blocks(const BoxBlock* a, const BoxBlock* b, std::size_t count, bool relative, BlockVerdict* verdicts) {
-    HWY_DYNAMIC_DISPATCH(FilterBlocks)(a, b, count, relative, verdicts);
+BlockVerdict filter_block(const BoxBlock& a, const BoxBlock& b) {
+    BlockVerdict verdict;
+    HWY_DYNAMIC_DISPATCH(FilterBlock)(a, b, verdict);
+    return verdict;
 }
 void measure_deviation(BoxBlock& block) {
     HWY_DYNAMIC_DISPATCH(MeasureDeviation)(block);

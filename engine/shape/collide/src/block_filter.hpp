@@ -16,8 +16,8 @@ struct BlockVerdict {
     std::uint32_t face_a = 0, face_b = 0, edges = 0, hit = 0;
 };
 
-// `verdicts[i]` for pair of blocks i. `relative`: b's centres are offsets from a's, which are then not read.
-void filter_blocks(const BoxBlock* a, const BoxBlock* b, std::size_t count, bool relative, BlockVerdict* verdicts);
+// Tests sixteen pairs. b's centres are offsets from a's, which are not read.
+BlockVerdict filter_block(const BoxBlock& a, const BoxBlock& b);
 
 // Fills deviation[] from axes[].
 void measure_deviation(BoxBlock& block);

@@ -64,10 +64,8 @@ BatchStatistics intersect_all(std::size_t count, Boxes box, Ahead ahead, std::sp
         }
         measure_deviation(a);
         measure_deviation(b);
-        BlockVerdict verdict;
-        filter_blocks(&a, &b, 1, true, &verdict);
         finish(
-            verdict, size, [&](int side, std::size_t lane) -> const Obb& { return box(side, begin + lane); },
+            filter_block(a, b), size, [&](int side, std::size_t lane) -> const Obb& { return box(side, begin + lane); },
             hits.data() + begin, statistics);
     }
     return statistics;
@@ -82,50 +80,6 @@ BatchStatistics& BatchStatistics::operator+=(const BatchStatistics& other) {
     hits += other.hits;
     refined += other.refined;
     return *this;
-}
-
-PackedBoxes::PackedBoxes() = default;
-PackedBoxes::~PackedBoxes() = default;
-PackedBoxes::PackedBoxes(PackedBoxes&&) noexcept = default;
-PackedBoxes& PackedBoxes::operator=(PackedBoxes&&) noexcept = default;
-
-std::span<const BoxBlock> PackedBoxes::blocks() const {
-    return blocks_;
-}
-
-void PackedBoxes::pack(std::span<const Obb> boxes, const glm::dvec3& origin) {
-    boxes_ = boxes;
-    origin_ = origin;
-    blocks_.resize((boxes.size() + kBoxBlock - 1) / kBoxBlock);
-    for (std::size_t block = 0; block < blocks_.size(); ++block) {
-        for (std::size_t lane = 0; lane < kBoxBlock; ++lane) {
-            const Obb& box = boxes[std::min(block * kBoxBlock + lane, boxes.size() - 1)];
-            put_center(box.center - origin, lane, blocks_[block]);
-            put_shape(box, lane, blocks_[block]);
-        }
-        measure_deviation(blocks_[block]);
-    }
-}
-
-BatchStatistics intersects(const PackedBoxes& a, const PackedBoxes& b, std::span<std::uint8_t> hits) {
-    CROFTON_ASSERT(a.boxes().size() == b.boxes().size() && hits.size() == a.boxes().size(), "one answer a pair");
-    CROFTON_ASSERT(a.origin() == b.origin(), "packed around the same origin");
-    constexpr std::size_t kAtOnce = 64;
-    BlockVerdict verdicts[kAtOnce];
-    BatchStatistics statistics;
-    const std::size_t blocks = a.blocks().size();
-    for (std::size_t first = 0; first < blocks; first += kAtOnce) {
-        const std::size_t count = std::min(kAtOnce, blocks - first);
-        filter_blocks(a.blocks().data() + first, b.blocks().data() + first, count, false, verdicts);
-        for (std::size_t i = 0; i < count; ++i) {
-            const std::size_t begin = (first + i) * kBoxBlock;
-            finish(
-                verdicts[i], std::min(kBoxBlock, hits.size() - begin),
-                [&](int side, std::size_t lane) -> const Obb& { return (side == 0 ? a : b).boxes()[begin + lane]; },
-                hits.data() + begin, statistics);
-        }
-    }
-    return statistics;
 }
 
 BatchStatistics intersects(std::span<const Obb> a, std::span<const Obb> b, std::span<std::uint8_t> hits) {

@@ -2,6 +2,7 @@
 // Tests whether a point, or another mesh, is inside a closed mesh, by counting the crossings of a ray.
 #include <algorithm>
 #include <cmath>
+#include <crofton/mesh/mesh_distance.hpp>
 #include <crofton/mesh/mesh_parts.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <crofton/mesh/mesh_tree.hpp>

@@ -129,13 +129,6 @@ struct VisibilityComplexity {
 [[nodiscard]] VisibilityComplexity visibility_complexity(const LineTracer& tracer, const LineSource& source,
                                                          std::uint64_t blocks, Executor& executor = serial_executor());
 
-// Returns the method that wastes fewer lines on this scene, walls or disc, by a trial of 8 blocks each.
-//
-// A box always has less surface than its circumscribed sphere: for a cube 2/π of it, for a flat square box 1/π. The
-// probability that a line hits the scene inside is proportional to the reciprocal. So `walls` is better for box-shaped
-// scenes; docs/notes/radiosity.md says by how much.
-[[nodiscard]] LineMethod choose_method(const LineTracer& tracer, std::uint64_t seed);
-
 // Whole bundles of parallel global lines at once: the scene is drawn into the grid whose cells the lines pass through.
 
 namespace detail {

@@ -33,8 +33,6 @@ inline constexpr int kNotSeparated = -1;
 
 // Many pairs of boxes at once: the exact answers of intersects(Obb, Obb), sixteen pairs per step.
 
-struct BoxBlock;
-
 // Counts of how the pairs of a batch were decided. The first four sum to the number of pairs.
 struct BatchStatistics {
     std::uint64_t separated_by_face_a = 0;  // early out: a face normal of the first box
@@ -46,32 +44,7 @@ struct BatchStatistics {
     BatchStatistics& operator+=(const BatchStatistics& other);
 };
 
-// Boxes packed for repeated use. It refers to your boxes, which must stay alive and unchanged while you make queries:
-// pairs that float cannot decide are decided from them.
-class PackedBoxes {
-  public:
-    PackedBoxes();
-    ~PackedBoxes();
-    PackedBoxes(PackedBoxes&&) noexcept;
-    PackedBoxes& operator=(PackedBoxes&&) noexcept;
-
-    // Packs the boxes. `origin` is any finite point near the boxes; the nearer, the fewer pairs take the slow path.
-    // Answers do not depend on it.
-    void pack(std::span<const Obb> boxes, const glm::dvec3& origin);
-    [[nodiscard]] std::span<const Obb> boxes() const { return boxes_; }
-    [[nodiscard]] std::span<const BoxBlock> blocks() const;  // for the queries
-    [[nodiscard]] const glm::dvec3& origin() const { return origin_; }
-
-  private:
-    ResetOnMove<std::span<const Obb>> boxes_;
-    Vector<BoxBlock> blocks_;
-    glm::dvec3 origin_{0.0};
-};
-
-// Sets hits[i] = intersects(a.boxes()[i], b.boxes()[i]). Requires equal sizes and equal origins. Allocates nothing.
-BatchStatistics intersects(const PackedBoxes& a, const PackedBoxes& b, std::span<std::uint8_t> hits);
-
-// Sets hits[i] = intersects(a[i], b[i]), without packing the boxes.
+// Sets hits[i] = intersects(a[i], b[i]). Requires equal sizes. Allocates nothing.
 BatchStatistics intersects(std::span<const Obb> a, std::span<const Obb> b, std::span<std::uint8_t> hits);
 
 // Sets hits[i] = intersects(boxes[pairs[i].first], boxes[pairs[i].second]). Requires hits.size() == pairs.size().

@@ -14,10 +14,6 @@
 #include <limits>
 #include <span>
 
-namespace crofton::convex {
-class Hull;
-}
-
 namespace crofton::cull {
 
 // ---- Verdicts ----
@@ -48,10 +44,6 @@ enum class CullMode : std::uint8_t {
 // no point in common although each three of them do. A camera's always have one.
 [[nodiscard]] Verdict classify(const Frustum& frustum, const Aabb& box, CullMode mode = CullMode::exact);
 [[nodiscard]] Verdict classify(const Frustum& frustum, const Sphere& sphere, CullMode mode = CullMode::exact);
-
-// Does the same for a convex hull in the frustum's coordinates, exactly for its vertices, as for k-DOPs or your own
-// bounds. If planes do not decide, it takes a microsecond: use it for bounds that are tested once, not for lists.
-[[nodiscard]] Verdict classify(const Frustum& frustum, const convex::Hull& hull, CullMode mode = CullMode::exact);
 
 // Classifies many boxes: writes verdicts[i] for boxes[i]. Allocates nothing; may run on any thread. Requires
 // verdicts.size() == boxes.size().

@@ -6,7 +6,6 @@
 #include <crofton/geometry/box.hpp>
 #include <crofton/geometry/mesh.hpp>
 #include <crofton/geometry/transform.hpp>
-#include <crofton/measure/measure.hpp>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <limits>
@@ -169,26 +168,5 @@ struct FoundOccluders {
 // budget. Errors: an index count that is not a multiple of three; 2^28 triangles or more, 2^26 of a level; no valid
 // triangle (empty); an option out of its range.
 [[nodiscard]] Result<FoundOccluders> find_occluders(const TriangleMesh& mesh, const FindOptions& options = {});
-
-// How much an occluder hides from a region of eyes: a measure to rank occluders by before any view is known.
-
-// The eyes and the objects of a scene.
-struct SeenScene {
-    Aabb eyes;                         // uniformly distributed in here; may be flat, a segment or a point
-    double range = 100.0;              // how far from the eye objects lie
-    measure::IntrinsicVolumes object;  // of one object, or the means over all; objects lie and turn uniformly
-    std::uint32_t samples = 64;        // of eyes; the same ones in every call
-};
-
-// Returns the expected volume of the places in which the convex hull of `points` hides an object entirely. Multiplied
-// by the number of objects per volume, it is the expected number of hidden objects.
-//
-// The shadow volume of a body K from an eye is the union of the rays' parts from K on, up to `range`. It is convex: the
-// hull of K and of K scaled from the eye. An object of surface F' and mean curvature M' lies in a convex body (V, F, M)
-// with kinematic measure V − F·M'/4π to first order. That is (1) in docs/theory.md, section 2, with the sign for
-// "contains" instead of "meets". The neglected terms are of second order in the object's size. An eye inside the hull
-// sees nothing hidden: 0. Errors: as measure::intrinsic_volumes_of_hull; eyes empty or not finite; a range that is not
-// positive and finite; samples of 0.
-[[nodiscard]] Result<double> occlusion_worth(std::span<const glm::dvec3> points, const SeenScene& scene);
 
 }  // namespace crofton::occlude

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: MIT
-#include "lines_factors.hpp"
-
+// `crofton study factors`: form factors by global lines, of Howell's standard pairs or of scenes.
 #include <algorithm>
 #include <cmath>
 #include <crofton/radiosity/patches.hpp>
 #include <crofton/study/mutual_information.hpp>
 #include <cstdio>
 #include <glm/geometric.hpp>
+#include <memory>
 
 #include "assets/flat_scene.hpp"
 #include "assets/print.hpp"
 #include "commands.hpp"
 #include "json/json.hpp"
+#include "read_options.hpp"
 #include "report.hpp"
 #include "verify/rows.hpp"
 #include "verify/standard_pairs.hpp"
@@ -19,6 +20,15 @@
 namespace crofton::cli {
 namespace {
 
+struct FactorsRun {
+    std::vector<std::string> scenes;  // none: the standard pairs
+    std::string map, json;
+    std::uint64_t blocks = 5000, seed = 1;  // blocks of 1024 lines
+    std::uint64_t patches = 1000;           // at most so many a scene
+    ReadOptions read = {};
+};
+
+// Lists F_12 beside its known value; kCheckFailed if one is off by more than kMaxZ errors.
 Result<int> run_pairs(const FactorsRun& run) {
     std::vector<VerifyRow> rows;
     for (const StandardPair& pair : standard_pairs()) {
@@ -85,10 +95,8 @@ Result<SceneComplexity> look_at(const std::string& scene, const FactorsRun& run)
     return result;
 }
 
-}  // namespace
-
-Result<int> run_factors(const FactorsRun& run) {
-    if (run.scenes.empty()) return run_pairs(run);
+// One line a scene: mean crossings, what escapes, and the mutual information of the form factors in bits.
+Result<int> run_scenes(const FactorsRun& run) {
     Json rows = Json::array();
     if (run.json != "-")
         print_to(stdout, "%-24s %10s %8s %10s %9s %10s %10s %10s\n", "scene", "triangles", "patches", "crossings",
@@ -114,6 +122,36 @@ Result<int> run_factors(const FactorsRun& run) {
     if (!run.json.empty())
         if (const auto written = write_json(run.json, rows); !written) return written.error();
     return kSuccess;
+}
+
+}  // namespace
+
+void add_factors_command(CommandLine& line) {
+    auto run = std::make_shared<FactorsRun>();
+    Command command = kFactors.add_to(line);
+    command.footer(
+        "Without a scene: the form factors of standard pairs next to their known values. With scenes: their mean\n"
+        "number of crossings a line, the rays that escape, and the mutual information in bits (docs/theory.md).\n"
+        "\n"
+        "Examples:\n"
+        "  crofton study factors\n"
+        "  crofton study factors room town --json -\n"
+        "  crofton study factors level.wad --map MAP07\n");
+    command.option("scenes", run->scenes, "town, room, or .glb, .gltf, .obj or .wad files");
+    command.option("--blocks", run->blocks, "Blocks of 1024 lines per scene or pair")
+        .whole_between(1, 100000)
+        .show_default();
+    command.option("--patches", run->patches, "Merge small triangles until a scene has at most this many patches")
+        .whole_between(2, 16384)
+        .show_default();
+    command.option("--seed", run->seed, "Seed of the lines and of the town").show_default();
+    command.option("--map", run->map, "Level of a .wad file");
+    command.option("--json", run->json, "Write the figures as JSON; - for stdout").writable_file_or_stdout();
+    add_read_options(command, run->read);
+    command.action([run] {
+        const auto status = run->scenes.empty() ? run_pairs(*run) : run_scenes(*run);
+        return status ? *status : report_error("", status.error());
+    });
 }
 
 }  // namespace crofton::cli
