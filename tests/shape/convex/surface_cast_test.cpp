@@ -3,6 +3,7 @@
 
 #include <ctime>
 
+#include "flat_floors.hpp"
 #include "surfaces.hpp"
 
 using namespace crofton;
@@ -139,6 +140,40 @@ TEST_SUITE("convex/surface_cast") {
         CHECK(hit.result == CastResult::hit);
         CHECK(hit.time == doctest::Approx(1.75 / 4).epsilon(1e-5));
         CHECK(hit.normal.y == doctest::Approx(-1.0));
+    }
+
+    TEST_CASE("what passes over an edge nearer than the tolerance misses, and what flies a little lower hits") {
+        RandomShapes random(36);
+        Surface s;  // a blade whose upper edge lies along x
+        s.mesh.positions = {{-3, 0, 0}, {3, 0, 0}, {3, -2, 0}, {-3, -2, 0}};
+        s.mesh.indices = {0, 1, 2, 0, 2, 3};
+        s.build();
+        const Shape blade = s.shape();
+        struct Flier {
+            Shape shape;
+            glm::dmat3 lying;  // its lower side is level
+            double low;        // below its origin
+        };
+        const Flier fliers[] = {
+            {Shape::sphere(0.5f).value(), glm::dmat3(1.0), 0.5},
+            {Shape::capsule(0.5f, 0.25f).value(), glm::dmat3({0, -1, 0}, {1, 0, 0}, {0, 0, 1}), 0.25},
+            {Shape::box({0.5f, 0.25f, 0.375f}).value(), glm::dmat3(1.0), 0.25},
+            {Shape::rounded(Shape::box({0.5f, 0.25f, 0.375f}).value(), 0.125f).value(), glm::dmat3(1.0), 0.375}};
+        for (int i = 0; i < 4000; ++i) {
+            const Flier& flier = fliers[i % 4];
+            const double tolerance = std::pow(10.0, random.number(-5, -2)),
+                         above = tolerance * (i % 8 < 4 ? random.number(0.05, 0.95) : -random.number(0.05, 2.0));
+            const RigidTransform frame{random.rotation(), random.number(0, 30) * random.direction()};
+            const glm::dvec3 from(random.number(-1, 1), flier.low + above, -2.0);
+            const RigidTransform pose{frame.rotation * around_y(random.number(0, 6)) * flier.lying,
+                                      frame.translation + frame.rotation * from};
+            const Motion motion{frame.rotation * glm::dvec3(random.number(-0.5, 0.5), 0.0, 4.0), {}, {}};
+            const CastOptions options{.tolerance = tolerance};
+            const CastResult expected = above > 0.0 ? CastResult::miss : CastResult::hit;
+            CAPTURE(i);
+            CHECK(cast({blade, frame}, {}, {flier.shape, pose}, motion, options)->result == expected);
+            CHECK(cast({flier.shape, pose}, motion, {blade, frame}, {}, options)->result == expected);
+        }
     }
 
     TEST_CASE("bad motions are named errors also for surfaces") {
