@@ -6,7 +6,9 @@
 //   bench_world --queries     queries among objects of which some move
 //   bench_world --bytes       bytes an object, as CSV
 //   bench_world --stacks      what an update of a thousand stacked crates costs, as shapes and as boxes
-//   bench_world --regions     a World of a thousand regions compared with one of a million objects
+//   bench_world --regions     a World of a thousand regions compared with one of a million objects; --regions=PART:
+//                             occluders, attaching, peers, jolt (if it is found), aging or town
+//   bench_world --growth      Worlds of regions against the number of objects, as CSV
 //   --frames=N                instead of 200
 //   --target=AVX2             with this instruction set
 //   --benchmark_filter=REGEX, --benchmark_repetitions=N, --benchmark_out=FILE: as Google Benchmark's, for results.py
@@ -51,8 +53,8 @@ constexpr Row kRows[] = {
 
 struct Options {
     int frames = 200, repetitions = 1;
-    bool changes = false, queries = false, stacks = false, bytes = false, regions = false;
-    std::string out;
+    bool changes = false, queries = false, stacks = false, bytes = false, regions = false, growth = false;
+    std::string out, part_of_regions;
     std::regex filter{""};
 };
 
@@ -71,7 +73,9 @@ bool parse(int argc, char** argv, Options& options) {
         else if (key == "--bytes")
             options.bytes = true;
         else if (key == "--regions")
-            options.regions = true;
+            options.regions = true, options.part_of_regions = value;
+        else if (key == "--growth")
+            options.growth = true;
         else if (key == "--stacks")
             options.stacks = true;
         else if (key == "--benchmark_filter")
@@ -121,9 +125,14 @@ int main(int argc, char** argv) {
         crofton::bench::bytes();
         return 0;
     }
+    if (options.growth) {
+        std::printf("# command: bench_world --growth --frames=%d --target=%s\n", options.frames, target);
+        crofton::bench::growth(options.frames);
+        return 0;
+    }
     if (options.regions) {
         std::printf("instruction set: %s\n", target);
-        crofton::bench::regions(options.frames);
+        crofton::bench::regions(options.frames, options.part_of_regions);
         return 0;
     }
     if (options.changes) {

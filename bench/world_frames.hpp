@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
+#include <string>
 
 namespace crofton::bench {
 
@@ -77,8 +78,12 @@ void changes(int frames);
 // Queries while some objects move: a table to stdout (world_changes.cpp).
 void queries_among_movers();
 
-// Worlds of regions: a table to stdout (world_regions.cpp).
-void regions(int frames);
+// Worlds of regions: tables to stdout (world_regions.cpp). `part` is one of those in the source; empty: all.
+void regions(int frames, const std::string& part);
+void jolt_regions();  // the same bodies in Jolt (world_peer_jolt.cpp)
+
+// Worlds of regions, of 10^3 to 10^8 objects: rows of a CSV to stdout (world_growth.cpp).
+void growth(int frames);
 
 // Updates of stacked crates: a table to stdout (world_stacks.cpp).
 void stacks(int frames);

@@ -181,13 +181,45 @@ void aging(int frames) {
                 views.world / views.by_hand, casts.world / casts.by_hand);
 }
 
+// How long Region::prepare goes on before a callback that wants it to stop is heard, at most: microseconds of the
+// clock, the least of some runs.
+double longest_until_asked(const std::vector<RegionObject>& objects) {
+    using Clock = std::chrono::steady_clock;
+    struct Asked {
+        Clock::time_point last = Clock::now();
+        double longest = 0.0;
+        void note() {
+            const Clock::time_point now = Clock::now();
+            longest = std::max(longest, std::chrono::duration<double, std::micro>(now - last).count());
+            last = now;
+        }
+    };
+    double least = 1e30;
+    for (int run = 0; run < 3; ++run) {
+        Asked asked;
+        RegionOptions options;
+        options.stop_user = &asked;
+        options.should_stop = [](void* user, double) {
+            static_cast<Asked*>(user)->note();
+            return false;
+        };
+        require_ok(Region::prepare(objects, options).has_value(), "preparing");
+        asked.note();
+        least = std::min(least, asked.longest);
+    }
+    return least;
+}
+
 void attaching(int frames) {
-    std::printf("objects,prepare in ms,attach and update in µs,detach and update in µs,bytes an object\n");
+    std::printf(
+        "objects,prepare in ms,the longest until it asks whether to stop in ms,attach and update in µs,detach and "
+        "update in µs,bytes an object\n");
     for (const std::size_t count : {1'000u, 10'000u, 100'000u, 1'000'000u}) {
         std::vector<RegionObject> objects;
         for (const Obb& box : crowd(count)) objects.push_back({.bound = box});
         Region region;
         const double prepare = microseconds([&] { region = Region::prepare(objects).value(); });
+        const double unasked = longest_until_asked(objects);
         World world({.pairs = false});
         double attach = 1e30, detach = 1e30;
         for (int frame = 0; frame < frames; ++frame) {
@@ -201,7 +233,7 @@ void attaching(int frames) {
                                   require_ok(world.update().has_value(), "an update");
                               }));
         }
-        std::printf("%zu,%.2f,%.2f,%.2f,%.0f\n", count, prepare / 1000.0, attach, detach,
+        std::printf("%zu,%.2f,%.1f,%.2f,%.2f,%.0f\n", count, prepare / 1000.0, unasked / 1000.0, attach, detach,
                     static_cast<double>(region.bytes()) / static_cast<double>(count));
     }
 }
@@ -228,7 +260,7 @@ void peers(int frames) {
 #endif
     std::printf(
         "objects,attach and update in µs,detach and update in µs,Bullet: insert in µs,remove in µs,build in ms\n");
-    for (const std::size_t count : {1'000u, 10'000u, 100'000u}) {
+    for (const std::size_t count : {1'000u, 10'000u, 100'000u, 1'000'000u}) {
         const std::vector<Obb> boxes = crowd(count);
         objects.clear();
         for (const Obb& box : boxes) objects.push_back({.bound = box});
@@ -246,7 +278,7 @@ void peers(int frames) {
                                   require_ok(world.update().has_value(), "an update");
                               }));
 #ifdef CROFTON_HAVE_BULLET
-            if (frame >= 5) continue;
+            if (frame >= (count > 10'000 ? 1 : 5)) continue;
             std::vector<btDbvtNode*> nodes(count);
             insert = std::min(insert, microseconds([&] {
                                   for (std::size_t i = 0; i < count; ++i)
@@ -310,11 +342,16 @@ void occluders() {
 
 }  // namespace
 
-void regions(int frames) {
-    occluders();
-    attaching(frames);
-    peers(frames);
-    aging(frames);
+void regions(int frames, const std::string& part) {
+    const auto wants = [&](const char* name) { return part.empty() || part == name; };
+    if (wants("occluders")) occluders();
+    if (wants("attaching")) attaching(frames);
+    if (wants("peers")) peers(frames);
+#ifdef CROFTON_HAVE_JOLT
+    if (wants("jolt")) jolt_regions();
+#endif
+    if (wants("aging")) aging(frames);
+    if (!wants("town")) return;
     Town town;
     views(town, frames);
     rays(town, frames);

@@ -37,7 +37,7 @@ export interface Motion {
     tolerance?: number;
     maxSteps?: number; ignoreInitialOverlaps?: boolean;
 }
-export interface ShapeHit { object: ObjectHandle; user: number; time: number; normal: number[]; point: number[]; triangle: number; distance: number; unresolved: boolean }
+export interface ShapeHit { object: ObjectHandle; user: number; time: number; normal: number[]; point: number[]; triangle: number; child: number; distance: number; unresolved: boolean }
 export interface Contact {
     first: ObjectRef; second: ObjectRef; phase: 'began' | 'stayed' | 'ended'; inside: 'nothing' | 'first' | 'second' | 'partly';
     /** Unit, from first to second; 0 if no direction is known. */
@@ -63,6 +63,8 @@ export interface MeshOptions {
     /** False: queries and contacts take the mesh for its box, and `update` takes less time. */
     triangles?: boolean;
 }
+export interface ObjectDescription { box?: BoxLike; sphere?: Sphere; mesh?: MeshHandle; shape?: Shape; transform?: Vector; node?: NodeHandle;
+    user?: number; layers?: number; collidesWith?: number; occludes?: boolean; onlyOccludes?: boolean; hidden?: boolean }
 /** Limits a query of a world: a layer mask, or a mask and objects that are not found, such as the one that asks. */
 export type Filter = number | { layers?: number; ignored?: ObjectHandle[] };
 export interface RegionObject { box?: BoxLike; sphere?: Sphere; shape?: Shape; mesh?: number; transform?: Vector; user?: number; layers?: number;
@@ -161,7 +163,15 @@ export interface ClusteredMesh extends Owned {
     readonly bytes: Uint8Array;
 }
 /** Many objects that do not move, for `World.attach`. */
-export interface Region extends Owned {}
+export interface Region extends Owned {
+    readonly count: number;
+    /** Around all objects, relative to the origin. */
+    readonly bounds: { min: number[]; max: number[] };
+    /** The mesh of the object at a place; -1: none. */
+    meshOf(place: number): number;
+    /** What a view's triangles refer to. Error: there is no such mesh, or it has none. */
+    clustersOf(mesh: number): Clusters;
+}
 /** Views: valid until the next view or any growth of memory. */
 export interface ViewResult extends Owned {
     readonly length: number;
@@ -229,8 +239,11 @@ export interface World extends Owned {
     setNodeLayers(node: NodeHandle, layers: number): void;
     setNodeTransform(node: NodeHandle, transform: Vector): void;
     /** `transform`: sixteen numbers by columns, the last row 0, 0, 0, 1. */
-    add(object: { box?: BoxLike; sphere?: Sphere; mesh?: MeshHandle; shape?: Shape; transform?: Vector; node?: NodeHandle;
-        user?: number; layers?: number; collidesWith?: number; occludes?: boolean; onlyOccludes?: boolean; hidden?: boolean }): ObjectHandle;
+    add(object: ObjectDescription): ObjectHandle;
+    /** Adds many in one call. If one is refused, the error's item is its place, and none is added. */
+    addMany(objects: ObjectDescription[]): ObjectHandle[];
+    /** Takes memory for so many objects in all. */
+    reserve(objects: number): void;
     remove(object: ObjectHandle): void;
     setHidden(object: ObjectHandle, hidden: boolean): void;
     setUser(object: ObjectHandle, user: number): void;
@@ -241,7 +254,16 @@ export interface World extends Owned {
     setShape(object: ObjectHandle, shape: Shape | null): void;
     setBox(object: ObjectHandle, box: BoxLike): void;
     setTransform(object: ObjectHandle, transform: Vector): void;
+    /** Sixteen numbers each. All are moved but those that are refused; the error's item is the place of the first. */
+    setTransforms(objects: ObjectHandle[], transforms: Float64Array | Float32Array): void;
+    setNodeTransforms(nodes: NodeHandle[], transforms: Float64Array | Float32Array): void;
+    setBoxes(objects: ObjectHandle[], boxes: Boxes): void;
     contains(object: ObjectHandle): boolean;
+    userOf(object: ObjectHandle): number;
+    /** As of the last update. Error: there was none since the object was added. */
+    boxOf(object: ObjectHandle): Box;
+    /** Sixteen numbers, to the world. Error: the object is a bound. */
+    transformOf(object: ObjectHandle): number[];
     update(): void;
     /** `camera` or `volume`, or both: then objects are tested against the volume, and hidden from the camera. */
     view(request: ViewRequest | ViewRequest[], visible: ViewResult): ViewResult;
@@ -253,9 +275,14 @@ export interface World extends Owned {
     raycastAny(origin: Vector, direction: Vector, maxT?: number, filter?: Filter): boolean;
     /** The first object that a moving shape meets; objects are at rest. */
     cast(shape: Placed, motion: Motion, filter?: Filter): ShapeHit | null;
+    /** The first hit of each object that it meets, in order of time. */
+    castAll(shape: Placed, motion: Motion, filter?: Filter): ShapeHit[];
+    /** Where a shape, which need not be an object, touches the objects, in order of index. The normal leads from the shape to the object. */
+    contactManifolds(shape: Placed, options?: { margin?: number; maxPoints?: number }, filter?: Filter): 
+        (ObjectRef & { normal: number[]; depth: number; points: { position: number[]; depth: number; partA: Part; partB: Part }[] })[];
     pairs(): { first: ObjectRef; second: ObjectRef }[];
     contacts(): Contact[];
-    readonly statistics: Record<'objects' | 'resting' | 'moving' | 'boxesChanged' | 'outOfRange', number>;
+    readonly statistics: Record<'objects' | 'resting' | 'moving' | 'boxesChanged' | 'outOfRange' | 'occludersWaiting', number>;
     attach(region: Region, origin?: Vector): AttachedRegion;
     detach(region: AttachedRegion): void;
     objectIn(region: AttachedRegion, place: number): ObjectHandle;
@@ -263,7 +290,7 @@ export interface World extends Owned {
     /** By index. Touching counts. */
     overlap(shape: QueryShape, filter?: Filter): ObjectRef[];
     /** `distance` is 0 for an object that overlaps. */
-    closest(shape: QueryShape, maxDistance?: number, filter?: Filter): (ObjectRef & { distance: number; onShape: number[]; onObject: number[] }) | null;
+    closest(shape: QueryShape, maxDistance?: number, filter?: Filter): (ObjectRef & { distance: number; onShape: number[]; onObject: number[]; triangle: number; child: number }) | null;
 }
 export interface Crofton {
     readonly version: string;
@@ -272,7 +299,8 @@ export interface Crofton {
     readonly Frustum: new (from?: { camera?: Camera; matrix?: Vector; depth?: Depth; origin?: Vector; layers?: number }) => Frustum;
     readonly Tree: new (boxes: Boxes) => Tree;
     readonly Triangulator: new () => Triangulator;
-    readonly World: new (options?: { pairs?: boolean; contacts?: boolean; containment?: boolean; meshDepth?: boolean; contactMargin?: number }) => World;
+    readonly World: new (options?: { pairs?: boolean; contacts?: boolean; containment?: boolean; meshDepth?: boolean; contactMargin?: number;
+        maxPairs?: number; updatesToRest?: number }) => World;
     readonly Shape: new (description: ShapeDescription) => Shape;
     readonly ClusteredMesh: { new (positions: Float32Array, indices: ArrayLike<number>, how?: { maxTriangles?: number }): ClusteredMesh; new (bytes: Uint8Array): ClusteredMesh };
     readonly DepthCuller: new () => DepthCuller;
@@ -281,6 +309,10 @@ export interface Crofton {
     cullBoxes(boxes: Boxes, frustum: Frustum, visible: ViewResult, how?: CullOptions): ViewResult;
     /** A verdict a box: 0 outside, 1 straddling, 2 inside. */
     classify(boxes: Boxes, frustum: Frustum): Uint8Array;
+    /** For a request's `limits`: leaves out what is less than `pixels` wide in a picture `pictureHeight` pixels high. */
+    limitsOfCamera(camera: Camera, pictureHeight: number, pixels: number): DrawLimits;
+    /** A mesh's indices in the order of its clusters: each cluster is then one range of an index buffer. */
+    permuteTriangles<T extends Uint32Array | Uint16Array>(clusters: Pick<Clusters, 'triangleOrder'>, indices: T): T;
     fitBox(points: Float32Array | Float64Array, how?: { quality?: 'fast' | 'tight' | 'exact';
         criterion?: { volume?: number; area?: number; meanCurvature?: number } }): Box;
     /** Of two shapes, without a World. Touching counts. */

@@ -18,6 +18,8 @@ cp "$work"/town/*0003.png town.png
 cp "$work"/street/*0035.png street.png
 "$crofton" bake town --instances 200000 --no-occluders --no-clusters --regions 8x8 --threads 0 --folder "$work/regions"
 "$crofton" view "$work/regions" --no-window --size 960x400 --script regions.json --after 6 --screenshot regions.png
+"$crofton" bake town --instances 1000000 --no-occluders --no-clusters --regions 36x36 --threads 0 --folder "$work/flight"
+"$crofton" frames "$work/flight" --no-draw --real-time --frames 300 --csv - | ./flight.py >flight.svg
 ./crofton.py >crofton.svg
 ./rooms.py >rooms.svg
 if command -v chromium >/dev/null; then

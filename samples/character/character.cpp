@@ -7,6 +7,7 @@
 namespace crofton::sample {
 
 constexpr int kMostSlides = 4;  // walls that one move may slide along
+constexpr int kMostPushes = 8;
 constexpr glm::dvec3 kUp(0.0, 1.0, 0.0);
 
 Character::Character(const glm::dvec3& position, const CharacterOptions& options)
@@ -16,6 +17,19 @@ Character::Character(const glm::dvec3& position, const CharacterOptions& options
 
 double Character::feet() const {
     return position_.y - static_cast<double>(options_.half_height) - static_cast<double>(options_.radius);
+}
+
+// Pushes out of the deepest object first, as another push may be needless then.
+void Character::come_out(const World& world) {
+    for (int push = 0; push < kMostPushes; ++push) {
+        const RigidTransform pose{glm::dmat3(1.0), position_};
+        if (!world.contact_manifolds(shape_, pose, {}, touched_, {options_.layers})) return;
+        const convex::Manifold* deepest = nullptr;
+        for (const ObjectManifold& touched : touched_)
+            if (deepest == nullptr || touched.manifold.depth > deepest->depth) deepest = &touched.manifold;
+        if (deepest == nullptr) return;
+        position_ -= (deepest->depth + options_.skin) * deepest->normal;
+    }
 }
 
 // Moves along the way until something is `skin` away. So nothing is ever touched, and the next sweep starts free.
@@ -95,6 +109,7 @@ void Character::step(const World& world, const glm::dvec3& start, const glm::dve
 }
 
 void Character::move(const World& world, const glm::dvec3& way) {
+    come_out(world);
     const glm::dvec3 across(way.x, 0.0, way.z), start = position_;
     const bool walked = on_ground_ && way.y <= 0.0;
     on_ground_ = false;

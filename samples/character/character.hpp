@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
-// A character's capsule that walks through a World: it slides along walls, climbs steps, and stands on slopes.
+// A character's capsule that walks through a World: it slides along walls, climbs steps, stands on slopes, and is
+// pushed out of what moves into it.
 #pragma once
 #include <crofton/convex/query.hpp>
 #include <crofton/crofton.hpp>
+#include <crofton/world/object_manifold.hpp>
 #include <optional>
 
 namespace crofton::sample {
@@ -20,7 +22,8 @@ class Character {
   public:
     Character(const glm::dvec3& position, const CharacterOptions& options = {});
 
-    // Walks by `way`, whose y counts too (a jump, a fall), as far as nothing is there. Never into anything.
+    // Comes out of what has moved into it since the last call. Then walks by `way`, whose y counts too (a jump, a
+    // fall), as far as nothing is there. Never into anything.
     void move(const World& world, const glm::dvec3& way);
 
     [[nodiscard]] const glm::dvec3& position() const { return position_; }
@@ -32,6 +35,7 @@ class Character {
         double share;       // of the way that is free
         glm::dvec3 normal;  // away from what was hit
     };
+    void come_out(const World& world);
     std::optional<Hit> sweep(const World& world, const glm::dvec3& way);
     glm::dvec3 slide(const World& world, glm::dvec3 way, bool walls_are_upright);
     void step(const World& world, const glm::dvec3& start, const glm::dvec3& across);
@@ -40,6 +44,7 @@ class Character {
     convex::Shape shape_;
     glm::dvec3 position_;
     bool on_ground_ = false;
+    Vector<ObjectManifold> touched_;
 };
 
 }  // namespace crofton::sample

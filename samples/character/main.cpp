@@ -21,11 +21,12 @@ void check(bool good, const char* what, const sample::Character& character) {
     failures += good ? 0 : 1;
 }
 
-void add_box(World& world, const glm::dvec3& center, const glm::vec3& half, std::uint32_t layers = kSolid,
-             const glm::dmat3& turn = glm::dmat3(1.0)) {
+ObjectHandle add_box(World& world, const glm::dvec3& center, const glm::vec3& half, std::uint32_t layers = kSolid,
+                     const glm::dmat3& turn = glm::dmat3(1.0)) {
     const ObjectHandle object = world.add({.bound = Obb{center, glm::mat3(turn), half}, .layers = layers}).value();
     const convex::Shape shape = convex::Shape::box(half).value();
     (void)world.set_shape(object, &shape);
+    return object;
 }
 
 void walk(sample::Character& character, const World& world, const glm::dvec3& velocity, int frames) {
@@ -49,6 +50,9 @@ int main() {
     add_box(world, {0, 1, -20}, {1, 1, 1}, kGhost);  // what the character does not meet
     const glm::dmat3 tilt = glm::mat3_cast(glm::angleAxis(0.4, glm::dvec3(0, 0, 1)));
     add_box(world, {20, 0, 20}, {6, 0.5f, 6}, kSolid, tilt);  // a slope of 23 degrees, towards +x
+    const Obb door{{-20, 1, -1}, glm::mat3(1.0f), {1, 1, 0.1f}}, lift{{-30, -0.9, 0}, glm::mat3(1.0f), {1, 1, 1}};
+    const ObjectHandle sliding = add_box(world, door.center, door.half_extents);
+    const ObjectHandle rising = add_box(world, lift.center, lift.half_extents);
     if (!world.update()) return 1;
     const sample::CharacterOptions options{.layers = kSolid};
 
@@ -86,5 +90,17 @@ int main() {
     walk(hiker, world, {}, 10);
     walk(hiker, world, {4, 0, 0}, 120);
     check(near(hiker.position().x, 20, 0.4) && hiker.feet() > 0.3 && hiker.is_on_ground(), "walks up a slope", hiker);
+
+    // Both move 0.05 a frame, into what is there.
+    sample::Character pushed({-20, 0.92, 0}, options), lifted({-30, 1.02, 0}, options);
+    for (int i = 1; i <= 40; ++i) {
+        (void)world.set_bound(sliding, Obb{door.center + glm::dvec3(0, 0, 0.05 * i), door.axes, door.half_extents});
+        (void)world.set_bound(rising, Obb{lift.center + glm::dvec3(0, 0.05 * i, 0), lift.axes, lift.half_extents});
+        if (!world.update()) return 1;
+        walk(pushed, world, {}, 1);
+        walk(lifted, world, {}, 1);
+    }
+    check(near(pushed.position().z, 1 + 0.1 + 0.4) && near(pushed.feet(), 0.0), "is pushed along by a door", pushed);
+    check(near(lifted.feet(), 2.1) && lifted.is_on_ground(), "rides up on a lift", lifted);
     return failures == 0 ? 0 : 1;
 }

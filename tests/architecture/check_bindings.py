@@ -5,7 +5,8 @@
 No compiler is needed. Of each struct that Rust and C# declare again, every member must lie at the offset and have the kind
 and the name of the header's. Of each function, every parameter must have the kind of the header's. Constants must
 have the header's values. JavaScript has offsets within its sources, which bindings/web/native/glue.c states: these are compared
-with a 32-bit layout, and each call must name a function that is exported and give it as many arguments as it takes.
+with a 32-bit layout, and each call must name a function that is exported and give it as many arguments as it takes. Each function of
+the headers is in each binding, or in a list here that says why not.
 """
 import pathlib
 import re
@@ -415,11 +416,58 @@ def arguments(text, at):
     return split_list(text[start:at - 1].replace("=>", "="))
 
 
+# Functions that a binding does without, as the beginnings of their names, and why; its README says so, too. What is not here must be
+# there: a new function of the headers is added to each binding, or to this list.
+EVERYWHERE = {
+    "scene_": "the command line bakes", "tree_": "World has a tree", "baked_scene_open": "it reads files, and does not map them",
+    "shape_contacts_": "World keeps contacts", "shape_outline": "World's contacts have the points", "shape_parts_near": "World's contacts have them",
+    "shape_create_with_jobs": "World.update uses threads", "shape_raycast_any": "shape_raycast says it", "meshes_": "shapes of meshes and World's contacts",
+    "broadphase_get_statistics": "of interest to this library alone", "default_manifold_options": "all 0", "default_query_filter": "written out",
+    "status_name": "named by the binding's type", "set_memory_hooks": "other languages allocate elsewhere", "set_assert_hook": "for debugging in C",
+}
+LEFT_OUT = {
+    "rust": {"set_thread_checks": "the compiler checks", "default_mesh_data": "written out", "default_depth_receivers": "written out",
+             "default_shadow_receivers": "written out"},
+    "csharp": {"default_cast_options": "written out"},
+    "web": {"api_version": "one file holds both", "set_thread_checks": "there are no threads", "world_contains_node": "removing one says it",
+            "broadphase_": "World has one", "boxes_": "shapes of boxes", "box_": "shapes of boxes", "criterion_for_": "the caller gives weights",
+            "fit_boxes": "fitBox takes their corners", "clustered_mesh_lend": "arrays of JavaScript are not in the library's memory",
+            "clustered_mesh_box": "a view needs none", "permute_triangles": "written in JavaScript", "world_get_occluder": "given ones are known",
+            "default_find_options": "the defaults", "default_cast_options": "written out", "last_error_item": "web_error_item",
+            "baked_": "the readers would make the package too large", "region_index_": "as baked_", "default_baked_": "as baked_", "pvs_": "as baked_"},
+}
+
+
+def check_complete(headers):
+    exported = re.search(r'EXPORTED = """(.*?)"""', (ROOT / "bindings/web/build.py").read_text(encoding="utf-8"), re.S)[1].split()
+    declared = {"rust": set(re.findall(r"fn crofton_(\w+)\(", text_of("bindings/rust/src/sys.rs"))),
+                "csharp": set(re.findall(r" crofton_(\w+)\(", text_of("bindings/csharp/src/Native.cs"))), "web": set(exported)}
+    for binding, names in declared.items():
+        left_out = {**EVERYWHERE, **LEFT_OUT[binding]}
+        used = set()
+        for name in (function[len("crofton_"):] for function in headers.functions):
+            whys = [start for start in left_out if name.startswith(start)]
+            used.update(whys)
+            if name not in names and not whys:
+                problems.append(f"bindings/{binding} has no crofton_{name}: add it, or say here why it does without")
+        for start in set(LEFT_OUT[binding]) - used:
+            problems.append(f"bindings/{binding}: there is no crofton_{start} to leave out")
+    count = {library: len((ROOT / library / "symbols.txt").read_text().split()) for library in ("engine/c_api", "engine/bake/c_api")}
+    told = "The runtime library has {} functions, `crofton_bake` {}:".format(*count.values())
+    text = (ROOT / "engine/c_api/README.md").read_text(encoding="utf-8")
+    if told not in text:
+        problems.append(f"engine/c_api/README.md: {told}")
+    rows = sum(int(number) for number in re.findall(r"^\| .* \| (\d+) \|$", text, re.M))
+    if rows != count["engine/c_api"]:
+        problems.append(f"engine/c_api/README.md: its table counts {rows} functions, of {count['engine/c_api']}")
+
+
 headers = Headers()
 rust, sharp = Rust(headers), Sharp(headers)
 rust.check()
 sharp.check()
 check_glue(headers)
 check_web_calls(headers)
+check_complete(headers)
 if problems:
     sys.exit("\n".join(dict.fromkeys(problems)))

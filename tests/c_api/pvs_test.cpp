@@ -5,6 +5,8 @@
 #include <crofton/crofton.hpp>
 #include <crofton/pvs/pvs.hpp>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <vector>
 
 #include "world_fixture.hpp"
@@ -100,6 +102,31 @@ TEST_SUITE("capi/pvs") {
         CHECK(request.candidate_words == 0);
         REQUIRE(crofton_world_view(world.get(), &request, 1, nullptr, visible.get()) == CROFTON_OK);
         CHECK(ids_in_view(visible.get()).size() == 4);
+    }
+
+    TEST_CASE("sets are read from memory that starts anywhere, and a part of the file is refused") {
+        const std::string path = file_of_sets();
+        std::ifstream file(path, std::ios::binary);
+        std::vector<char> bytes(1);  // so that the file does not start at a multiple of 64
+        bytes.insert(bytes.end(), std::istreambuf_iterator<char>(file), {});
+        std::filesystem::remove(path);
+        const auto* const first = reinterpret_cast<const std::uint8_t*>(bytes.data()) + 1;
+        const std::size_t count = bytes.size() - 1;
+        crofton_pvs* read = nullptr;
+        for (const std::size_t cut : {std::size_t{0}, std::size_t{1}, count / 2, count - 1})
+            CHECK(crofton_pvs_read(first, cut, &read) == CROFTON_PARSE);
+        CHECK(read == nullptr);
+        CHECK(crofton_pvs_read(nullptr, count, &read) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_pvs_read(first, count, nullptr) == CROFTON_INVALID_ARGUMENT);
+        REQUIRE(crofton_pvs_read(first, count, &read) == CROFTON_OK);
+        const SetsHandle sets(read);
+        bytes.assign(bytes.size(), 0);  // it was copied
+        const double inside[3] = {0.0, 1.0, 0.0};
+        const std::uint64_t* words = nullptr;
+        std::size_t word_count = 0;
+        REQUIRE(crofton_pvs_visible(sets.get(), inside, CROFTON_PVS_STATISTICAL, &words, &word_count) == CROFTON_OK);
+        REQUIRE(word_count == 1);
+        CHECK((words[0] & 0b0111) == 0b0011);
     }
 
     TEST_CASE("mistakes are reported by name") {

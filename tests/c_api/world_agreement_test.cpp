@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // World in C answers what World in C++ answers, bit for bit.
 #include <cmath>
+#include <crofton/convex/query.hpp>
+#include <crofton/world/object_manifold.hpp>
 #include <cstring>
 #include <limits>
 
@@ -215,6 +217,77 @@ void compare_closest(const BothWorlds& both, const crofton_closest_object& c,
     CHECK(c.distance == expected->distance);
     CHECK(same_vector(c.on_shape, expected->on_shape));
     CHECK(same_vector(c.on_object, expected->on_object));
+    CHECK(c.triangle == expected->triangle);
+    CHECK(c.child == expected->child);
+}
+
+bool same_shape_hit(const BothWorlds& both, const crofton_shape_hit& a, const ShapeHit& b) {
+    return same_ref(both, {a.object, a.user}, {b.object, b.user}) && a.time == b.time &&
+           same_vector(a.normal, b.normal) && same_vector(a.point, b.point) && a.triangle == b.triangle &&
+           a.child == b.child && (a.result == CROFTON_CAST_HIT) == b.resolved && a.distance == b.distance;
+}
+
+// Returns how many hits and manifolds there were.
+std::size_t compare_probes(const BothWorlds& both, NearMisses& random) {
+    const auto half_height = static_cast<float>(random.number(0.5, 4.0));
+    crofton_shape* made = nullptr;
+    REQUIRE(shape_round(CROFTON_SHAPE_CAPSULE, half_height, 1.5f, &made) == CROFTON_OK);
+    const ShapeHandle c_probe(made);
+    const convex::Shape probe = convex::Shape::capsule(half_height, 1.5f).value();
+    const Transform place{glm::dmat3(1.0), 20.0 * random.direction()};
+    const RigidTransform pose{place.linear, place.translation};
+    const auto c_place = same_bytes<crofton_transform>(place);
+    const crofton_placed placed{c_probe.get(), &c_place};
+    const convex::Motion motion{-2.0 * place.translation};
+    crofton_motion c_motion{};
+    std::memcpy(c_motion.velocity, &motion.velocity, sizeof c_motion.velocity);
+    const std::uint32_t layers = random.index(15) + 1;
+    const crofton_query_filter filter = in_layers(layers);
+    crofton_world* const c = both.c.get();
+
+    auto hit = sized<crofton_shape_hit>();
+    REQUIRE(crofton_world_cast(c, &placed, &c_motion, nullptr, &filter, &hit) == CROFTON_OK);
+    const auto first = both.world.cast(probe, pose, motion, {}, {layers}).value();
+    REQUIRE((hit.object.index != CROFTON_NONE) == first.has_value());
+    if (first) CHECK(same_shape_hit(both, hit, *first));
+    const Found found = make_found();
+    std::size_t hit_count = 0, manifold_count = 0;
+    const crofton_shape_hit* hits = nullptr;
+    Vector<ShapeHit> expected;
+    REQUIRE(crofton_world_cast_all(c, &placed, &c_motion, nullptr, &filter, found.get()) == CROFTON_OK);
+    REQUIRE(crofton_found_shape_hits(found.get(), &hits, &hit_count) == CROFTON_OK);
+    REQUIRE(both.world.cast_all(probe, pose, motion, {}, expected, {layers}).has_value());
+    REQUIRE(hit_count == expected.size());
+    for (std::size_t i = 0; i < hit_count; ++i) {
+        CHECK(hits[i].size == sizeof *hits);
+        CHECK(same_shape_hit(both, hits[i], expected[i]));
+    }
+    auto options = sized<crofton_manifold_options>();
+    options.margin = 2.0;
+    options.max_points = 6;
+    const crofton_object_manifold* manifolds = nullptr;
+    Vector<ObjectManifold> touched;
+    REQUIRE(crofton_world_manifolds(c, &placed, &options, &filter, found.get()) == CROFTON_OK);
+    REQUIRE(crofton_found_manifolds(found.get(), &manifolds, &manifold_count) == CROFTON_OK);
+    REQUIRE(both.world.contact_manifolds(probe, pose, {2.0, 6}, touched, {layers}).has_value());
+    REQUIRE(manifold_count == touched.size());
+    for (std::size_t i = 0; i < manifold_count; ++i) {
+        const convex::Manifold& manifold = touched[i].manifold;
+        CHECK(same_ref(both, {manifolds[i].object, manifolds[i].user}, {touched[i].object, touched[i].user}));
+        CHECK(same_vector(manifolds[i].normal, manifold.normal));
+        CHECK(manifolds[i].depth == manifold.depth);
+        REQUIRE(manifolds[i].point_count == static_cast<std::uint32_t>(manifold.count));
+        for (int k = 0; k < manifold.count; ++k) {
+            const crofton_shape_point& point = manifolds[i].points[k];
+            CHECK(same_vector(point.position, manifold.points[k].position));
+            CHECK(point.depth == manifold.points[k].depth);
+            CHECK(point.part_b.triangle == manifold.points[k].part_b.triangle);
+            CHECK(point.on_b.index == manifold.points[k].on_b.index);
+        }
+    }
+    REQUIRE(crofton_found_shape_hits(found.get(), &hits, &hit_count) == CROFTON_OK);
+    CHECK(hit_count == 0);
+    return expected.size() + manifold_count;
 }
 
 void compare_shapes(const BothWorlds& both, NearMisses& random) {
@@ -275,7 +348,7 @@ TEST_SUITE("capi/world agreement") {
         const auto meshes = add_meshes(both);
         add_nodes(both, random, 12);
         for (int i = 0; i < 400; ++i) add_object(both, random, meshes);
-        std::size_t seen = 0, hit = 0, touching = 0;
+        std::size_t seen = 0, hit = 0, touching = 0, probed = 0;
         for (int frame = 0; frame < 12; ++frame) {
             CAPTURE(frame);
             if (frame > 0) change(both, random);
@@ -287,8 +360,10 @@ TEST_SUITE("capi/world agreement") {
             seen += compare_views(both, random);
             hit += compare_rays(both, random);
             compare_shapes(both, random);
+            for (int i = 0; i < 5; ++i) probed += compare_probes(both, random);
         }
         // The comparison is of something.
+        CHECK(probed > 100);
         CHECK(seen > 100);
         CHECK(hit > 100);
         CHECK(touching > 100);

@@ -238,6 +238,9 @@ TEST_SUITE("capi/world shapes") {
         auto hit = sized<crofton_shape_hit>();
         CHECK(world_overlap(s.world.get(), &placed, nullptr, found.get()) == CROFTON_UNSUPPORTED);
         CHECK(crofton_world_cast(s.world.get(), &placed, nullptr, nullptr, nullptr, &hit) == CROFTON_UNSUPPORTED);
+        CHECK(crofton_world_cast_all(s.world.get(), &placed, nullptr, nullptr, nullptr, found.get()) ==
+              CROFTON_UNSUPPORTED);
+        CHECK(crofton_world_manifolds(s.world.get(), &placed, nullptr, nullptr, found.get()) == CROFTON_UNSUPPORTED);
         auto closest = sized<crofton_closest_object>();
         CHECK(world_closest(s.world.get(), &placed, 1.0, nullptr, &closest) == CROFTON_UNSUPPORTED);
         REQUIRE(crofton_world_remove(s.world.get(), s.crate) == CROFTON_OK);

@@ -65,12 +65,20 @@ TEST_SUITE("capi/world") {
         CHECK(crofton_world_contacts(world, nullptr, &count) == bad);
         CHECK(crofton_found_objects(s.found.get(), nullptr, &count) == bad);
         CHECK(crofton_found_hits(s.found.get(), nullptr, &count) == bad);
+        CHECK(crofton_found_shape_hits(s.found.get(), nullptr, &count) == bad);
+        CHECK(crofton_found_manifolds(s.found.get(), nullptr, &count) == bad);
+        CHECK(crofton_world_cast_all(world, nullptr, nullptr, nullptr, nullptr, s.found.get()) == CROFTON_BAD_HANDLE);
+        CHECK(crofton_world_manifolds(world, nullptr, nullptr, nullptr, s.found.get()) == CROFTON_BAD_HANDLE);
         const crofton_object_pair* pairs = nullptr;
         const crofton_object_ref* objects = nullptr;
         const crofton_object_hit* hits = nullptr;
         CHECK(crofton_world_pairs(world, &pairs, nullptr) == bad);
         CHECK(crofton_found_objects(s.found.get(), &objects, nullptr) == bad);
         CHECK(crofton_found_hits(s.found.get(), &hits, nullptr) == bad);
+        const crofton_shape_hit* shape_hits = nullptr;
+        const crofton_object_manifold* manifolds = nullptr;
+        CHECK(crofton_found_shape_hits(s.found.get(), &shape_hits, nullptr) == bad);
+        CHECK(crofton_found_manifolds(s.found.get(), &manifolds, nullptr) == bad);
         // No handle, or one of another kind.
         CHECK(crofton_world_update(nullptr, nullptr) == CROFTON_BAD_HANDLE);
         CHECK(crofton_world_destroy(reinterpret_cast<crofton_world*>(s.found.get())) == CROFTON_BAD_HANDLE);

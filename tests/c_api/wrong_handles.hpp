@@ -19,7 +19,7 @@ template <class P>
 inline constexpr bool kIsHandle = std::is_pointer_v<P>&&
     kIsOneOf<Pointee<P>, crofton_scene, crofton_tree, crofton_broadphase, crofton_triangulator, crofton_world,
              crofton_view_result, crofton_shape, crofton_shape_contacts, crofton_found, crofton_baked_scene,
-             crofton_pvs, crofton_clustered_mesh, crofton_depth_culler, crofton_region>;
+             crofton_pvs, crofton_clustered_mesh, crofton_depth_culler, crofton_region, crofton_region_index>;
 
 constexpr unsigned char kUntouched = 0xA5;
 

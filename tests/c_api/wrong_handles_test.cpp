@@ -31,6 +31,9 @@ void refuse_world_changes(Table& table) {
     CROFTON_REFUSE(crofton_world_set);
     CROFTON_REFUSE(crofton_world_update);
     CROFTON_REFUSE(crofton_region_destroy);
+    CROFTON_REFUSE(crofton_region_get_info);
+    CROFTON_REFUSE(crofton_region_mesh_of);
+    CROFTON_REFUSE(crofton_region_clusters_of);
     CROFTON_REFUSE(crofton_world_attach);
     CROFTON_REFUSE(crofton_world_detach);
     CROFTON_REFUSE(crofton_world_object_in);
@@ -51,6 +54,8 @@ void refuse_world_queries(Table& table) {
     CROFTON_REFUSE(crofton_world_pairs);
     CROFTON_REFUSE(crofton_world_contacts);
     CROFTON_REFUSE(crofton_world_cast);
+    CROFTON_REFUSE(crofton_world_cast_all);
+    CROFTON_REFUSE(crofton_world_manifolds);
     CROFTON_REFUSE(crofton_world_find_occluders);
     CROFTON_REFUSE(crofton_world_set_occluders);
     CROFTON_REFUSE(crofton_world_get_occluder);
@@ -66,6 +71,8 @@ void refuse_results(Table& table) {
     CROFTON_REFUSE(crofton_found_destroy);
     CROFTON_REFUSE(crofton_found_objects);
     CROFTON_REFUSE(crofton_found_hits);
+    CROFTON_REFUSE(crofton_found_shape_hits);
+    CROFTON_REFUSE(crofton_found_manifolds);
     CROFTON_REFUSE(crofton_view_result_depth);
 }
 
@@ -113,6 +120,9 @@ void refuse_modules_queries(Table& table) {
     CROFTON_REFUSE(crofton_baked_scene_clusters);
     CROFTON_REFUSE(crofton_baked_scene_instances);
     CROFTON_REFUSE(crofton_baked_scene_nodes);
+    CROFTON_REFUSE(crofton_region_index_destroy);
+    CROFTON_REFUSE(crofton_region_index_files);
+    CROFTON_REFUSE(crofton_region_index_prepare);
     CROFTON_REFUSE(crofton_pvs_destroy);
     CROFTON_REFUSE(crofton_pvs_counts);
     CROFTON_REFUSE(crofton_pvs_find_cell);
@@ -134,6 +144,7 @@ void refuse_depth(Table& table) {
 // Calls without a handle, or with one inside a struct or an array: other tests are theirs.
 const std::set<std::string> kWithoutHandle = {
     "api_version",
+    "baked_region_open",
     "baked_scene_open",
     "baked_scene_read",
     "shapes_cast",
@@ -162,6 +173,7 @@ const std::set<std::string> kWithoutHandle = {
     "criterion_for_frustum",
     "criterion_for_rays",
     "default_shape_description",
+    "default_baked_region_options",
     "default_camera",
     "default_cast_options",
     "default_depth_object",
@@ -193,6 +205,8 @@ const std::set<std::string> kWithoutHandle = {
     "log",
     "permute_triangles",
     "pvs_open",
+    "pvs_read",
+    "region_index_open",
     "region_prepare",
     "scene_create",
     "set_assert_hook",

@@ -20,7 +20,24 @@ namespace Crofton {
     public sealed class Clusters {
         public Cluster[] All;
         public uint[] TriangleOrder;
+
+        /// <summary>Returns a mesh's indices in the order of its clusters.</summary>
+        public uint[] Permute(uint[] indices) {
+            Library.NotNull(indices, "indices");
+            using (var memory = new Copies()) {
+                var data = new Native.ClustersData {
+                    Clusters = memory.Pinned(All), ClusterCount = (UIntPtr)All.Length, TriangleOrder = memory.Pinned(TriangleOrder),
+                    TriangleCount = (UIntPtr)TriangleOrder.Length
+                };
+                var permuted = new uint[indices.Length];
+                Library.Check(Native.crofton_permute_triangles(ref data, indices, (UIntPtr)indices.Length, permuted));
+                return permuted;
+            }
+        }
     }
+
+    /// <summary>The order of indices that are lent to a ClusteredMesh: by Clusters.Permute, or as the mesh was cut.</summary>
+    public enum IndexOrder { Permuted = 0, Original = 1 }
 
     /// <summary>A cluster with triangles to draw: bit k of Triangles stands for triangle FirstTriangle + k of the cluster.</summary>
     [StructLayout(LayoutKind.Sequential)]
@@ -29,10 +46,11 @@ namespace Crofton {
         public ulong Triangles;
     }
 
-    /// <summary>A mesh cut into clusters. It never changes. A World takes it as `precut`; what uses it keeps what it needs.</summary>
+    /// <summary>A mesh cut into clusters. A World takes it as `precut`; what uses it keeps what it needs.</summary>
     public sealed class ClusteredMesh : IDisposable {
         internal readonly ClusteredMeshHandle Handle;
 
+        internal ClusteredMesh(ClusteredMeshHandle handle) { Handle = handle; }
         /// <summary>Cuts a mesh into clusters of up to maxTriangles, at most 64; 0 chooses by the size of the mesh.</summary>
         public ClusteredMesh(float[] positions, uint[] indices, uint maxTriangles = 0) {
             Library.Load();
@@ -50,6 +68,20 @@ namespace Crofton {
         /// <summary>Frees the mesh; a World that was made of it keeps what it needs.</summary>
         public void Dispose() { Handle.Dispose(); }
 
+        /// <summary>Reads your arrays from now on in place of copies, and pins them until the mesh is freed: it then needs a tenth to a seventh of their
+        /// memory. Do not change them: views would be wrong. With permuted indices the order of triangles is released, too, and Clusters returns an
+        /// empty one. Error: another mesh than was cut, with the index as Item; nothing has changed.</summary>
+        public void Lend(float[] positions, uint[] indices, IndexOrder order = IndexOrder.Permuted) {
+            var memory = new Copies();
+            try {
+                Native.PlainMeshData data = memory.Of(positions, indices);
+                Library.Check(Native.crofton_clustered_mesh_lend(Handle, ref data, (uint)order));
+            } catch {
+                memory.Dispose();
+                throw;
+            }
+            Handle.Keep(memory);
+        }
         /// <summary>Returns a copy, to store; for machines of the same byte order.</summary>
         public byte[] ToBytes() {
             UIntPtr count;

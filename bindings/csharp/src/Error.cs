@@ -25,6 +25,9 @@ namespace Crofton {
         }
     }
 
+    /// <summary>How grave a message is.</summary>
+    public enum LogLevel { Debug = 0, Info = 1, Warning = 2, Error = 3 }
+
     /// <summary>The native library.</summary>
     public static class Library {
         /// <summary>"major.minor.patch"</summary>
@@ -45,20 +48,64 @@ namespace Crofton {
             throw new CroftonException((Status)status, ToText(Native.crofton_last_error()), item == ulong.MaxValue ? (ulong?)null : item);
         }
 
-        static string ToText(IntPtr text) {
+        /// <summary>Sends the library's messages to a function, on any thread; null: warnings and errors to the standard error, as at the start.
+        /// No other thread may call the library at the same time.</summary>
+        public static void SetLogger(Action<LogLevel, string> logger) {
+            LogHook hook = null;
+            if (logger != null)
+                hook = (user, level, message) => {
+                    try {
+                        logger((LogLevel)level, ToText(message));
+                    } catch (Exception e) { // which must not pass through the library
+                        Console.Error.WriteLine(e);
+                    }
+                };
+            Check(Native.crofton_set_log_hook(hook == null ? IntPtr.Zero : Marshal.GetFunctionPointerForDelegate(hook), IntPtr.Zero));
+            GC.KeepAlive(logHook);
+            logHook = hook;
+        }
+        /// <summary>Sends a message to where the library's go.</summary>
+        public static void Log(LogLevel level, string message) { Check(Native.crofton_log((uint)level, ToBytes(message, "message"))); }
+
+        [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
+        delegate void LogHook(IntPtr user, uint level, IntPtr message);
+        static LogHook logHook; // the library has its address
+
+        internal static string ToText(IntPtr text) {
             int length = 0;
             while (Marshal.ReadByte(text, length) != 0) ++length;
+            return ToText(text, length);
+        }
+        internal static string ToText(IntPtr text, int length) {
             var bytes = new byte[length];
             Marshal.Copy(text, bytes, 0, length);
             return Encoding.UTF8.GetString(bytes);
+        }
+        // UTF-8 with a 0 at its end.
+        internal static byte[] ToBytes(string text, string name) {
+            NotNull(text, name);
+            if (text.IndexOf('\0') >= 0) throw new ArgumentException("there is a 0 within", name);
+            return Encoding.UTF8.GetBytes(text + "\0");
         }
 
         // Copies an answer of the library's.
         internal static T[] ToArray<T>(IntPtr first, UIntPtr count) where T : struct {
             var result = new T[(int)count];
+            if (result.Length == 0) return result;
             int size = Marshal.SizeOf(typeof(T));
-            for (int i = 0; i < result.Length; ++i)
-                result[i] = (T)Marshal.PtrToStructure(new IntPtr(first.ToInt64() + (long)i * size), typeof(T));
+            long total = (long)result.Length * size;
+            var part = new byte[Math.Min(total, 1 << 16)];
+            GCHandle pinned = GCHandle.Alloc(result, GCHandleType.Pinned);
+            try {
+                long to = pinned.AddrOfPinnedObject().ToInt64();
+                for (long at = 0; at < total; at += part.Length) {
+                    int bytes = (int)Math.Min(part.Length, total - at);
+                    Marshal.Copy(new IntPtr(first.ToInt64() + at), part, 0, bytes);
+                    Marshal.Copy(part, 0, new IntPtr(to + at), bytes);
+                }
+            } finally {
+                pinned.Free();
+            }
             return result;
         }
 

@@ -63,6 +63,17 @@ namespace Crofton {
             Library.Check(Native.crofton_boxes_distance(ref a, ref b, out distance, out onA, out onB));
             return distance;
         }
+        /// <summary>Returns where two boxes touch, at most eight points; null if they do not. Moving b by depth times normal ends the contact.</summary>
+        public static ContactPoint[] Contacts(Obb a, Obb b, out Vector3 normal, out double depth) {
+            Library.Load();
+            var data = new Native.ManifoldData { Size = Native.SizeOf<Native.ManifoldData>(), Points = new ContactPoint[8] };
+            Library.Check(Native.crofton_boxes_manifold(ref a, ref b, ref data));
+            normal = data.Normal;
+            depth = data.Depth;
+            if (data.PointCount == 0) return null;
+            Array.Resize(ref data.Points, (int)data.PointCount);
+            return data.Points;
+        }
         /// <summary>Returns the t at which the ray enters the box: 0 if it begins inside, null if it misses.</summary>
         public double? Enters(Ray ray) {
             Library.Load();

@@ -64,6 +64,66 @@ namespace Crofton {
         }
 
         [StructLayout(LayoutKind.Sequential)]
+        internal struct RegionInfoData {
+            public UIntPtr Size;
+            public ulong ObjectCount, Bytes;
+            public Vector3 Min, Max;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct BakedRegionOptionsData {
+            public UIntPtr Size;
+            public uint Triangles, Occluders, CollidesWith, TrustContents;
+            public ulong MaxObjects;
+            public double MaxOrigin;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct RegionFileData {
+            public IntPtr Name;
+            public Vector3 Origin, Min, Max;
+            public ulong Objects, Bytes;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct BakedMeshData {
+            public UIntPtr Size;
+            public IntPtr Positions;
+            public UIntPtr VertexCount;
+            public IntPtr Colors, Indices;
+            public UIntPtr IndexCount;
+            public IntPtr Name;
+            public UIntPtr NameLength;
+            public Obb Box;
+            public uint OneSided, Flat, Unlit, Reserved;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct FindOptionsData {
+            public UIntPtr Size;
+            public uint IsTwoSided, MaxOccluders, MaxEdges, MaxBoxesAPiece, Grid;
+            public double LeastGain, Flatness;
+            public uint MaxPatchTriangles, LevelTriangles;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct ManifoldData {
+            public UIntPtr Size;
+            public Vector3 Normal;
+            public double Depth;
+            public uint PointCount;
+            [MarshalAs(UnmanagedType.ByValArray, SizeConst = 8)] public ContactPoint[] Points;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct JobsData {
+            public UIntPtr Size;
+            public IntPtr User;
+            public uint Concurrency;
+            public IntPtr ParallelFor;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
         internal struct ObjectData {
             public UIntPtr Size;
             public ulong User;
@@ -270,6 +330,17 @@ namespace Crofton {
             public Vector3 Normal, Point;
             public uint Triangle, Result;
             public double Distance;
+            public uint Child;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct ObjectManifoldData {
+            public ObjectHandle Object;
+            public ulong User;
+            public Vector3 Normal;
+            public double Depth;
+            public uint PointCount;
+            [MarshalAs(UnmanagedType.ByValArray, SizeConst = 8)] public ShapePoint[] Points;
         }
 
         [StructLayout(LayoutKind.Sequential)]
@@ -311,6 +382,7 @@ namespace Crofton {
             public ulong User;
             public double Distance;
             public Vector3 OnShape, OnObject;
+            public uint Triangle, Child;
         }
 
         [StructLayout(LayoutKind.Sequential)]
@@ -426,6 +498,9 @@ namespace Crofton {
         [DllImport(Library)] internal static extern IntPtr crofton_version_string();
         [DllImport(Library)] internal static extern int crofton_set_thread_checks(int on);
 
+        [DllImport(Library)] internal static extern int crofton_set_log_hook(IntPtr hook, IntPtr user);
+        [DllImport(Library)] internal static extern int crofton_log(uint level, byte[] message);
+
         [DllImport(Library)] internal static extern CameraData crofton_default_camera();
         [DllImport(Library)] internal static extern WorldOptionsData crofton_default_world_options();
         [DllImport(Library)] internal static extern MeshData crofton_default_mesh_data();
@@ -443,11 +518,19 @@ namespace Crofton {
         [DllImport(Library)] internal static extern int crofton_box_transform(ref Transform transform, ref Obb box, out Obb result);
         [DllImport(Library)] internal static extern int crofton_classify(ref FrustumData frustum, Obb[] boxes, UIntPtr count, [Out] byte[] verdicts);
         [DllImport(Library)] internal static extern int crofton_boxes_meet(ref Obb a, ref Obb b, out int meet);
+        [DllImport(Library)] internal static extern int crofton_view_boxes(Obb[] boxes, uint[] layerMasks, UIntPtr count, ref ViewRequestData request, IntPtr jobs, VisibleHandle visible);
+        [DllImport(Library)] internal static extern int crofton_draw_limits_of_camera(ref CameraData camera, double pictureHeight, double pixels, ref DrawLimitsData limits);
+        [DllImport(Library)] internal static extern int crofton_broadphase_create(out BroadphaseHandle broadphase);
+        [DllImport(Library)] internal static extern int crofton_broadphase_destroy(IntPtr broadphase);
+        [DllImport(Library)] internal static extern int crofton_broadphase_update(BroadphaseHandle broadphase, Obb[] boxes, Filter[] filters, UIntPtr count, IntPtr jobs);
+        [DllImport(Library)] internal static extern int crofton_broadphase_pairs(BroadphaseHandle broadphase, uint which, out IntPtr pairs, out UIntPtr count);
+        [DllImport(Library)] internal static extern int crofton_boxes_manifold(ref Obb a, ref Obb b, ref ManifoldData manifold);
         [DllImport(Library)] internal static extern int crofton_boxes_distance(ref Obb a, ref Obb b, out double distance, out Vector3 onA, out Vector3 onB);
         [DllImport(Library)] internal static extern int crofton_box_raycast(ref Obb box, ref Ray ray, out double t);
 
         [DllImport(Library)] internal static extern int crofton_criterion_for_rays(double length, out Criterion criterion);
         [DllImport(Library)] internal static extern int crofton_criterion_for_frustum(ref CameraData camera, out Criterion criterion);
+        [DllImport(Library)] internal static extern int crofton_fit_boxes(Obb[] boxes, UIntPtr count, ref Criterion criterion, out Obb box);
         [DllImport(Library)] internal static extern int crofton_fit_points(float[] points, UIntPtr count, uint isDouble, ref FitOptionsData options, out Obb box);
         [DllImport(Library)] internal static extern int crofton_fit_points(double[] points, UIntPtr count, uint isDouble, ref FitOptionsData options, out Obb box);
 
@@ -467,6 +550,8 @@ namespace Crofton {
         [DllImport(Library)] internal static extern DepthObjectData crofton_default_depth_object();
         [DllImport(Library)] internal static extern DepthReceiversData crofton_default_depth_receivers();
         [DllImport(Library)] internal static extern int crofton_clustered_mesh_create(ref PlainMeshData mesh, uint maxTriangles, out ClusteredMeshHandle clustered);
+        [DllImport(Library)] internal static extern int crofton_clustered_mesh_lend(ClusteredMeshHandle clustered, ref PlainMeshData mesh, uint order);
+        [DllImport(Library)] internal static extern int crofton_permute_triangles(ref ClustersData clusters, uint[] indices, UIntPtr indexCount, [Out] uint[] permuted);
         [DllImport(Library)] internal static extern int crofton_clustered_mesh_destroy(IntPtr clustered);
         [DllImport(Library)] internal static extern int crofton_clustered_mesh_get(ClusteredMeshHandle clustered, out ClustersData clusters);
         [DllImport(Library)] internal static extern int crofton_clustered_mesh_box(ClusteredMeshHandle clustered, UIntPtr cluster, out ClusterBox box);
@@ -494,10 +579,36 @@ namespace Crofton {
         [DllImport(Library)] internal static extern int crofton_world_set_node_layers(WorldHandle world, NodeHandle node, uint layers);
         [DllImport(Library)] internal static extern int crofton_world_set_node_transforms(WorldHandle world, NodeHandle[] nodes, UIntPtr stride, Transform[] transforms, UIntPtr transformStride, UIntPtr count);
         [DllImport(Library)] internal static extern int crofton_world_add(WorldHandle world, ref ObjectData description, out ObjectHandle handle);
+        [DllImport(Library)] internal static extern int crofton_world_add_many(WorldHandle world, ObjectData[] descriptions, UIntPtr count, [Out] ObjectHandle[] objects);
+        [DllImport(Library)] internal static extern int crofton_world_reserve(WorldHandle world, UIntPtr objects);
+        [DllImport(Library)] internal static extern int crofton_world_contains_node(WorldHandle world, NodeHandle node, out int contains);
         [DllImport(Library)] internal static extern RegionObjectData crofton_default_region_object();
         [DllImport(Library)] internal static extern RegionOptionsData crofton_default_region_options();
         [DllImport(Library)] internal static extern int crofton_region_prepare(RegionObjectData[] objects, UIntPtr count, ref RegionOptionsData options, IntPtr jobs, out RegionHandle region);
         [DllImport(Library)] internal static extern int crofton_region_destroy(IntPtr region);
+        [DllImport(Library)] internal static extern int crofton_region_get_info(RegionHandle region, ref RegionInfoData info);
+        [DllImport(Library)] internal static extern int crofton_region_mesh_of(RegionHandle region, uint place, out uint mesh);
+        [DllImport(Library)] internal static extern int crofton_region_clusters_of(RegionHandle region, uint mesh, out ClustersData clusters);
+        [DllImport(Bake)] internal static extern BakedRegionOptionsData crofton_default_baked_region_options();
+        [DllImport(Bake)] internal static extern int crofton_baked_region_open(byte[] path, ref BakedRegionOptionsData options, IntPtr jobs, out RegionHandle region);
+        [DllImport(Bake)] internal static extern int crofton_region_index_open(byte[] folder, out RegionIndexHandle index);
+        [DllImport(Bake)] internal static extern int crofton_region_index_destroy(IntPtr index);
+        [DllImport(Bake)] internal static extern int crofton_region_index_files(RegionIndexHandle index, out IntPtr files, out UIntPtr count);
+        [DllImport(Bake)] internal static extern int crofton_region_index_prepare(RegionIndexHandle index, UIntPtr place, ref BakedRegionOptionsData options, IntPtr jobs, out RegionHandle region);
+        [DllImport(Bake)] internal static extern int crofton_baked_scene_read(byte[] path, IntPtr jobs, out BakedSceneHandle baked, out TreeHandle tree);
+        [DllImport(Bake)] internal static extern int crofton_baked_scene_destroy(IntPtr baked);
+        [DllImport(Bake)] internal static extern int crofton_tree_destroy(IntPtr tree);
+        [DllImport(Bake)] internal static extern int crofton_baked_scene_mesh_count(BakedSceneHandle baked, out UIntPtr count);
+        [DllImport(Bake)] internal static extern int crofton_baked_scene_mesh(BakedSceneHandle baked, uint mesh, ref BakedMeshData data);
+        [DllImport(Bake)] internal static extern int crofton_baked_scene_clusters(BakedSceneHandle baked, uint mesh, out ClusteredMeshHandle clustered);
+        [DllImport(Bake)] internal static extern int crofton_baked_scene_instances(BakedSceneHandle baked, out IntPtr instances, out UIntPtr count);
+        [DllImport(Bake)] internal static extern int crofton_baked_scene_nodes(BakedSceneHandle baked, out IntPtr nodes, out UIntPtr count);
+        [DllImport(Bake)] internal static extern int crofton_pvs_open(byte[] path, out PvsHandle pvs);
+        [DllImport(Bake)] internal static extern int crofton_pvs_read(byte[] bytes, UIntPtr count, out PvsHandle pvs);
+        [DllImport(Bake)] internal static extern int crofton_pvs_destroy(IntPtr pvs);
+        [DllImport(Bake)] internal static extern int crofton_pvs_counts(PvsHandle pvs, out UIntPtr cells, out UIntPtr objects);
+        [DllImport(Bake)] internal static extern int crofton_pvs_find_cell(PvsHandle pvs, ref Vector3 eye, out uint cell);
+        [DllImport(Bake)] internal static extern int crofton_pvs_visible(PvsHandle pvs, ref Vector3 eye, uint mode, out IntPtr words, out UIntPtr count);
         [DllImport(Library)] internal static extern int crofton_world_attach(WorldHandle world, RegionHandle region, ref Vector3 origin, out AttachedRegion attached);
         [DllImport(Library)] internal static extern int crofton_world_detach(WorldHandle world, AttachedRegion region);
         [DllImport(Library)] internal static extern int crofton_world_object_in(WorldHandle world, AttachedRegion region, uint place, out ObjectHandle handle);
@@ -510,12 +621,17 @@ namespace Crofton {
         [DllImport(Library)] internal static extern int crofton_world_get_statistics(WorldHandle world, ref WorldStatisticsData statistics);
         [DllImport(Library)] internal static extern int crofton_world_get_object(WorldHandle world, ObjectHandle handle, ref ObjectInfo info);
         [DllImport(Library)] internal static extern int crofton_world_get_mesh(WorldHandle world, MeshHandle mesh, ref MeshInfo info);
+        [DllImport(Library)] internal static extern int crofton_found_shape_hits(FoundHandle found, out IntPtr hits, out UIntPtr count);
+        [DllImport(Library)] internal static extern int crofton_found_manifolds(FoundHandle found, out IntPtr manifolds, out UIntPtr count);
+        [DllImport(Library)] internal static extern int crofton_world_cast_all(WorldHandle world, ref PlacedData probe, ref Motion motion, ref CastOptionsData options, ref QueryFilterData filter, FoundHandle found);
+        [DllImport(Library)] internal static extern int crofton_world_manifolds(WorldHandle world, ref PlacedData probe, ref ManifoldOptionsData options, ref QueryFilterData filter, FoundHandle found);
         [DllImport(Library)] internal static extern int crofton_world_cast(WorldHandle world, ref PlacedData probe, ref Motion motion, ref CastOptionsData options, ref QueryFilterData filter, ref ShapeHitData hit);
         [DllImport(Library)] internal static extern int crofton_world_set_occluders(WorldHandle world, MeshHandle mesh, OccluderData[] occluders, UIntPtr count);
         [DllImport(Library)] internal static extern int crofton_world_get_occluder(WorldHandle world, MeshHandle mesh, UIntPtr place, ref OccluderData occluder);
         [DllImport(Library)] internal static extern int crofton_view_result_occluders(VisibleHandle visible, WorldHandle world, ObjectHandle[] hidden, [Out] OccluderRef[] occluders, UIntPtr capacity, out UIntPtr count);
         [DllImport(Library)] internal static extern int crofton_view_result_depth(VisibleHandle visible, UIntPtr view, [Out] float[] nearness, UIntPtr capacity);
-        [DllImport(Library)] internal static extern int crofton_world_find_occluders(WorldHandle world, MeshHandle mesh, IntPtr options);
+        [DllImport(Library)] internal static extern int crofton_world_find_occluders(WorldHandle world, MeshHandle mesh, ref FindOptionsData options);
+        [DllImport(Library)] internal static extern FindOptionsData crofton_default_find_options();
 
         [DllImport(Library)] internal static extern int crofton_view_result_create(out VisibleHandle visible);
         [DllImport(Library)] internal static extern int crofton_view_result_destroy(IntPtr visible);
@@ -561,12 +677,36 @@ namespace Crofton {
         protected override int Destroy(IntPtr raw) { return Native.crofton_found_destroy(raw); }
     }
     internal sealed class ClusteredMeshHandle : OwnedHandle {
-        protected override int Destroy(IntPtr raw) { return Native.crofton_clustered_mesh_destroy(raw); }
+        Copies lent; // arrays that the library reads
+        internal void Keep(Copies arrays) {
+            if (lent != null) lent.Dispose();
+            lent = arrays;
+        }
+        protected override int Destroy(IntPtr raw) {
+            int status = Native.crofton_clustered_mesh_destroy(raw);
+            Keep(null);
+            return status;
+        }
     }
     internal sealed class DepthCullerHandle : OwnedHandle {
         protected override int Destroy(IntPtr raw) { return Native.crofton_depth_culler_destroy(raw); }
     }
     internal sealed class TriangulatorHandle : OwnedHandle {
         protected override int Destroy(IntPtr raw) { return Native.crofton_triangulator_destroy(raw); }
+    }
+    internal sealed class BroadphaseHandle : OwnedHandle {
+        protected override int Destroy(IntPtr raw) { return Native.crofton_broadphase_destroy(raw); }
+    }
+    internal sealed class BakedSceneHandle : OwnedHandle {
+        protected override int Destroy(IntPtr raw) { return Native.crofton_baked_scene_destroy(raw); }
+    }
+    internal sealed class TreeHandle : OwnedHandle {
+        protected override int Destroy(IntPtr raw) { return Native.crofton_tree_destroy(raw); }
+    }
+    internal sealed class RegionIndexHandle : OwnedHandle {
+        protected override int Destroy(IntPtr raw) { return Native.crofton_region_index_destroy(raw); }
+    }
+    internal sealed class PvsHandle : OwnedHandle {
+        protected override int Destroy(IntPtr raw) { return Native.crofton_pvs_destroy(raw); }
     }
 }

@@ -4,7 +4,7 @@ using System.Runtime.InteropServices;
 
 namespace Crofton {
     /// <summary>The answer to a view. Reuse it from frame to frame.</summary>
-    public sealed class ViewResult : IDisposable {
+    public sealed partial class ViewResult : IDisposable {
         internal readonly VisibleHandle Handle;
         ObjectRef[] objects = new ObjectRef[0];
         uint[] masks = new uint[0];
@@ -86,6 +86,8 @@ namespace Crofton {
         public ulong User;
         public double Distance;
         public Vector3 OnShape, OnObject;
+        /// <summary>At OnObject: the triangle of the object's mesh or its shape's surface, uint.MaxValue where there is none; the child of a compound.</summary>
+        public uint Triangle, Child;
     }
 
     /// <summary>Two objects whose boxes or spheres overlap; First has the lower index.</summary>
@@ -231,6 +233,15 @@ namespace Crofton {
         /// <summary>Bit i % 64 of word i / 64 says whether the object with index i was drawn before; its limits are then Hysteresis times as long.</summary>
         public ulong[] DrawnBefore;
         public double Hysteresis = 1;
+
+        /// <summary>Returns limits that leave out what is less than `pixels` wide in a picture pictureHeight pixels high.</summary>
+        public static DrawLimits OfCamera(Camera camera, double pictureHeight, double pixels) {
+            Library.NotNull(camera, "camera");
+            Native.CameraData given = camera.Data();
+            Native.DrawLimitsData data = Native.crofton_default_draw_limits();
+            Library.Check(Native.crofton_draw_limits_of_camera(ref given, pictureHeight, pixels, ref data));
+            return new DrawLimits { Eye = data.Eye, MaxDistanceInRadii = data.MaxDistanceInRadii, LeastRadius = data.LeastRadius };
+        }
     }
 
     /// <summary>The request of a view.</summary>
@@ -370,7 +381,8 @@ namespace Crofton {
             }
             if (data.Object.Index == uint.MaxValue) return null;
             return new Closest {
-                Object = data.Object, User = data.User, Distance = data.Distance, OnShape = data.OnShape, OnObject = data.OnObject
+                Object = data.Object, User = data.User, Distance = data.Distance, OnShape = data.OnShape, OnObject = data.OnObject,
+                Triangle = data.Triangle, Child = data.Child
             };
         }
 

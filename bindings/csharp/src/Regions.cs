@@ -42,7 +42,7 @@ namespace Crofton {
     }
 
     /// <summary>Many objects that do not move. Prepare it on any thread and attach it to a World, where that takes microseconds.</summary>
-    public sealed class Region : IDisposable {
+    public sealed partial class Region : IDisposable {
         internal readonly RegionHandle Handle;
 
         /// <summary>Prepares a region. If an object or a mesh is refused, the exception's Item is its place. With findOccluders, searches
@@ -86,6 +86,38 @@ namespace Crofton {
         }
         /// <summary>Frees the region; a World that it is attached to keeps what it needs.</summary>
         public void Dispose() { Handle.Dispose(); }
+
+        /// <summary>Returns what the region holds.</summary>
+        public RegionInfo Info() {
+            var data = new Native.RegionInfoData { Size = Native.SizeOf<Native.RegionInfoData>() };
+            Library.Check(Native.crofton_region_get_info(Handle, ref data));
+            return new RegionInfo { ObjectCount = data.ObjectCount, Bytes = data.Bytes, Min = data.Min, Max = data.Max };
+        }
+        /// <summary>Returns the mesh of the object at a place, as its number among the region's meshes or in the file; -1: it has none.</summary>
+        public int MeshOf(int place) {
+            uint mesh;
+            Library.Check(Native.crofton_region_mesh_of(Handle, (uint)place, out mesh));
+            return (int)mesh;
+        }
+        /// <summary>Returns the clusters of a mesh, to which a view's triangles refer; null: there is no such mesh, or it has none.</summary>
+        public Clusters ClustersOf(int mesh) {
+            using (var memory = new Copies()) {
+                memory.Held(Handle);
+                Native.ClustersData data;
+                int status = Native.crofton_region_clusters_of(Handle, (uint)mesh, out data);
+                if (status == (int)Status.Empty) return null;
+                Library.Check(status);
+                return ClusteredMesh.Of(data);
+            }
+        }
+    }
+
+    /// <summary>What a Region holds.</summary>
+    public struct RegionInfo {
+        /// <summary>The number of objects; bytes of memory, without those of occluders and clusters.</summary>
+        public ulong ObjectCount, Bytes;
+        /// <summary>A box around all objects, relative to the origin; Min is infinite without objects.</summary>
+        public Vector3 Min, Max;
     }
 
     /// <summary>A Region that is attached to a World.</summary>

@@ -50,6 +50,14 @@ namespace Crofton {
             Library.Check(Native.crofton_fit_points(points, (UIntPtr)(points.Length / 3), 1, ref options, out box));
             return box;
         }
+        /// <summary>Returns a box that contains all the boxes.</summary>
+        public static Obb Box(Obb[] boxes, Criterion? criterion = null) {
+            Library.NotNull(boxes, "boxes");
+            Criterion given = criterion ?? Criterion.MinimalPerimeter();
+            Obb box;
+            Library.Check(Native.crofton_fit_boxes(boxes, (UIntPtr)boxes.Length, ref given, out box));
+            return box;
+        }
         static Native.FitOptionsData Options(Array points, Quality quality, Criterion? criterion) {
             Library.NotNull(points, "points");
             if (points.Length % 3 != 0) throw new ArgumentException("points are x, y, z each", "points");

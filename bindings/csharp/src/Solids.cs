@@ -277,10 +277,17 @@ namespace Crofton {
         public double Time, Distance;
         /// <summary>Unit, from the shape to the object; a point on the object's surface.</summary>
         public Vector3 Normal, Point;
-        /// <summary>The triangle of the object's mesh or its shape's surface; else 0.</summary>
-        public uint Triangle;
+        /// <summary>The triangle of the object's mesh or its shape's surface, uint.MaxValue where there is none; the child of a compound.</summary>
+        public uint Triangle, Child;
         /// <summary>True if MaxSteps was too small: the shape meets nothing before Time.</summary>
         public bool IsUnresolved;
+    }
+
+    /// <summary>Where a shape touches an object, in one direction. The contact's normal leads from the shape to the object.</summary>
+    public sealed class ObjectManifold {
+        public ObjectHandle Object;
+        public ulong User;
+        public ShapeContact Contact;
     }
 
     public sealed partial class World {
@@ -322,9 +329,49 @@ namespace Crofton {
                 Library.Check(Native.crofton_world_cast(Handle, ref placed, ref motion, ref given, ref accepted, ref data));
             }
             if (data.Object.Index == uint.MaxValue) return null;
+            return HitOf(data);
+        }
+        /// <summary>Lists the first hit of each object that a moving shape meets, in order of Time, then of index.</summary>
+        public ShapeHit[] CastAll(Placed shape, Motion motion, CastOptions options = null, QueryFilter filter = null) {
+            var given = CastOptions.Data(options);
+            using (var memory = new Copies())
+            using (var found = Find()) {
+                Native.PlacedData placed = memory.Of(shape);
+                Native.QueryFilterData accepted = memory.Of(filter);
+                IntPtr hits;
+                UIntPtr count;
+                Library.Check(Native.crofton_world_cast_all(Handle, ref placed, ref motion, ref given, ref accepted, found));
+                Library.Check(Native.crofton_found_shape_hits(found, out hits, out count));
+                return Library.ToArray<Native.ShapeHitData>(hits, count).Select(HitOf).ToArray();
+            }
+        }
+        /// <summary>Lists where a shape, which need not be an object, touches the objects, up to a margin, in order of index: up to maxPoints points a
+        /// direction, 1 to 8.</summary>
+        public ObjectManifold[] ContactManifolds(Placed shape, double margin = 0, uint maxPoints = 4, QueryFilter filter = null) {
+            var options = new Native.ManifoldOptionsData { Size = Native.SizeOf<Native.ManifoldOptionsData>(), Margin = margin, MaxPoints = maxPoints };
+            using (var memory = new Copies())
+            using (var found = Find()) {
+                Native.PlacedData placed = memory.Of(shape);
+                Native.QueryFilterData accepted = memory.Of(filter);
+                IntPtr manifolds;
+                UIntPtr count;
+                Library.Check(Native.crofton_world_manifolds(Handle, ref placed, ref options, ref accepted, found));
+                Library.Check(Native.crofton_found_manifolds(found, out manifolds, out count));
+                var result = new ObjectManifold[(int)count];
+                for (int i = 0; i < result.Length; ++i) {
+                    var m = Marshal.PtrToStructure<Native.ObjectManifoldData>(new IntPtr(manifolds.ToInt64() + (long)i * Marshal.SizeOf(typeof(Native.ObjectManifoldData))));
+                    result[i] = new ObjectManifold {
+                        Object = m.Object, User = m.User,
+                        Contact = new ShapeContact { Normal = m.Normal, Depth = m.Depth, Points = m.Points.Take((int)m.PointCount).ToArray() }
+                    };
+                }
+                return result;
+            }
+        }
+        static ShapeHit HitOf(Native.ShapeHitData data) {
             return new ShapeHit {
                 Object = data.Object, User = data.User, Time = data.Time, Distance = data.Distance, Normal = data.Normal, Point = data.Point,
-                Triangle = data.Triangle, IsUnresolved = data.Result == Native.CastUnresolved
+                Triangle = data.Triangle, Child = data.Child, IsUnresolved = data.Result == Native.CastUnresolved
             };
         }
     }

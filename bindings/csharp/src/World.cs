@@ -56,6 +56,20 @@ namespace Crofton {
         public ulong MaxPairs = 1ul << 24;
         /// <summary>Gaps up to this between shapes are contacts.</summary>
         public double ContactMargin;
+        /// <summary>Updates without motion after which an object rests again.</summary>
+        public uint UpdatesToRest = 16;
+        /// <summary>Items' worth of background work on the tree in each update; 0: none, and no allocation; the default: as many as are good.</summary>
+        public ulong RebuildBudget = ulong.MaxValue;
+    }
+
+    /// <summary>How World.FindOccluders searches.</summary>
+    public sealed class FindOptions {
+        /// <summary>Back faces are drawn as well.</summary>
+        public bool IsTwoSided;
+        /// <summary>0: the library's choice.</summary>
+        public uint MaxOccluders;
+        /// <summary>Not 0: takes a level of many small pieces as surfaces of so many triangles, say 48.</summary>
+        public uint LevelTriangles;
     }
 
     /// <summary>As of the last update.</summary>
@@ -66,6 +80,10 @@ namespace Crofton {
         public uint BoxesChanged;
         /// <summary>Objects whose product of transforms is out of range: hidden until it is valid.</summary>
         public uint OutOfRange;
+        /// <summary>Pairs of boxes that the last update tested, and those whose shapes or triangles it tested.</summary>
+        public ulong BoxPairsTested, ContactPairsTested;
+        /// <summary>Objects of regions whose occluders are not placed yet; they hide nothing until then.</summary>
+        public ulong OccludersWaiting;
     }
 
     /// <summary>Holds a game's objects and answers queries about them. Changes take effect in Update, once a frame; queries answer as
@@ -87,6 +105,8 @@ namespace Crofton {
             data.MeshDepth = Flag(options.MeshDepth);
             data.MaxPairs = options.MaxPairs;
             data.ContactMargin = options.ContactMargin;
+            data.UpdatesToRest = options.UpdatesToRest;
+            data.RebuildBudget = options.RebuildBudget;
             Library.Check(Native.crofton_world_create(ref data, out Handle));
         }
         /// <summary>Frees the world; any later call throws ObjectDisposedException.</summary>
@@ -148,6 +168,42 @@ namespace Crofton {
         public ObjectHandle Add(Bound bound, ulong user = 0, uint layers = AllLayers, uint collidesWith = AllLayers) {
             return Add(Describe(user, layers, collidesWith), bound.Data, (ref Native.ObjectData d, IntPtr p) => d.Bound = p);
         }
+        /// <summary>Adds many objects with only bounds; objects[i] becomes the handle of bounds[i]. Adds all valid ones: the exception names the
+        /// first of the others, whose handles are stale from the start. users: a number for each, or null.</summary>
+        public void AddMany(Bound[] bounds, ObjectHandle[] objects, ulong[] users = null, uint layers = AllLayers, uint collidesWith = AllLayers) {
+            Library.NotNull(bounds, "bounds");
+            AddMany(Array.ConvertAll(bounds, b => b.Data), objects, users, layers, collidesWith, (ref Native.ObjectData d, IntPtr p) => d.Bound = p);
+        }
+        /// <summary>Adds many objects with one mesh. The rest as for bounds.</summary>
+        public void AddMany(MeshHandle mesh, Transform[] transforms, ObjectHandle[] objects, ulong[] users = null, uint layers = AllLayers,
+                            uint collidesWith = AllLayers) {
+            AddMany(transforms, objects, users, layers, collidesWith, (ref Native.ObjectData d, IntPtr p) => {
+                d.HasMesh = 1;
+                d.Mesh = mesh;
+                d.Transform = p;
+            });
+        }
+        void AddMany<T>(T[] parts, ObjectHandle[] objects, ulong[] users, uint layers, uint collidesWith, Put put) where T : struct {
+            UIntPtr count = Library.SameLength(parts, objects);
+            if (users != null) Library.SameLength(parts, users);
+            using (var memory = new Copies()) {
+                long first = memory.Pinned(parts).ToInt64();
+                int size = Marshal.SizeOf(typeof(T));
+                Native.ObjectData data = Describe(0, layers, collidesWith);
+                var all = new Native.ObjectData[parts.Length];
+                for (int i = 0; i < all.Length; ++i) {
+                    if (users != null) data.User = users[i];
+                    put(ref data, new IntPtr(first + (long)i * size));
+                    all[i] = data;
+                }
+                Library.Check(Native.crofton_world_add_many(Handle, all, count, objects));
+            }
+        }
+        /// <summary>Takes memory for so many objects in all, so that no later call has to copy what the world knows of each.</summary>
+        public void Reserve(int objects) {
+            if (objects < 0) throw new ArgumentOutOfRangeException("objects");
+            Library.Check(Native.crofton_world_reserve(Handle, (UIntPtr)objects));
+        }
         /// <summary>Removes an object; its handle becomes stale.</summary>
         public void Remove(ObjectHandle handle) { Library.Check(Native.crofton_world_remove(Handle, handle)); }
         /// <summary>Moves objects with meshes or only shapes. Applies all valid items; the exception names the first invalid one.</summary>
@@ -188,7 +244,15 @@ namespace Crofton {
             Set(handle, Native.SetUser, (ref Native.ObjectData d) => d.User = user);
         }
         /// <summary>Searches a mesh for occluders, which the next update applies. Takes a second or more for 100,000 triangles.</summary>
-        public void FindOccluders(MeshHandle mesh) { Library.Check(Native.crofton_world_find_occluders(Handle, mesh, IntPtr.Zero)); }
+        public void FindOccluders(MeshHandle mesh, FindOptions options = null) {
+            Native.FindOptionsData data = Native.crofton_default_find_options();
+            if (options != null) {
+                data.IsTwoSided = Flag(options.IsTwoSided);
+                if (options.MaxOccluders != 0) data.MaxOccluders = options.MaxOccluders;
+                if (options.LevelTriangles != 0) data.LevelTriangles = options.LevelTriangles;
+            }
+            Library.Check(Native.crofton_world_find_occluders(Handle, mesh, ref data));
+        }
         /// <summary>Returns the number of a mesh's occluders.</summary>
         public int OccluderCount(MeshHandle mesh) {
             return (int)Info(mesh).OccluderCount;
@@ -200,13 +264,16 @@ namespace Crofton {
 
         /// <summary>Applies the changes and finds pairs and contacts. Call it once a frame. Error: more than MaxPairs pairs; all
         /// pairs are dropped, everything else is up to date.</summary>
-        public void Update() { Change(() => Library.Check(Native.crofton_world_update(Handle, IntPtr.Zero))); }
+        public void Update() { Update(1); }
+        /// <summary>Does the same on several threads of the thread pool, with the same result.</summary>
+        public void Update(int threads) { Change(() => Jobs.With(threads, jobs => Library.Check(Native.crofton_world_update(Handle, jobs)))); }
 
         /// <summary>Returns the statistics of the last update.</summary>
         public Statistics Statistics() {
             Native.WorldStatisticsData data = StatisticsData();
             return new Statistics {
-                Objects = data.Objects, Resting = data.Resting, Moving = data.Moving, BoxesChanged = data.BoxesChanged, OutOfRange = data.OutOfRange
+                Objects = data.Objects, Resting = data.Resting, Moving = data.Moving, BoxesChanged = data.BoxesChanged, OutOfRange = data.OutOfRange,
+                BoxPairsTested = data.BoxPairsTested, ContactPairsTested = data.ContactPairsTested, OccludersWaiting = data.OccludersWaiting
             };
         }
         /// <summary>The number of objects.</summary>
@@ -220,6 +287,19 @@ namespace Crofton {
         public bool Contains(ObjectHandle handle) {
             var info = new Native.ObjectInfo { Size = Native.SizeOf<Native.ObjectInfo>() };
             int status = Native.crofton_world_get_object(Handle, handle, ref info);
+            if (status != (int)Status.StaleHandle) Library.Check(status);
+            return status == 0;
+        }
+        /// <summary>Tests whether the world contains the node.</summary>
+        public bool Contains(NodeHandle node) {
+            int contains;
+            Library.Check(Native.crofton_world_contains_node(Handle, node, out contains));
+            return contains != 0;
+        }
+        /// <summary>Tests whether the world contains the mesh.</summary>
+        public bool Contains(MeshHandle mesh) {
+            var info = new Native.MeshInfo { Size = Native.SizeOf<Native.MeshInfo>() };
+            int status = Native.crofton_world_get_mesh(Handle, mesh, ref info);
             if (status != (int)Status.StaleHandle) Library.Check(status);
             return status == 0;
         }

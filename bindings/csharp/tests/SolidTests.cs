@@ -177,6 +177,21 @@ static class SolidTests {
             Expect.Near(-1, hit.Normal.X, 1e-6);
             Expect.True(world.Cast(at(4), Along(-1, 0, 0), new CastOptions { Duration = 1.4 }) == null);
             Expect.True(world.Cast(at(4), Along(-1, 0, 0), Long, 0) == null);
+            ShapeHit[] all = world.CastAll(at(4), Along(-1, 0, 0), Long);
+            Expect.Sequence(new[] { 2ul, 1ul, 0ul }, all.Select(h => h.User).ToArray());
+            for (int i = 0; i < 3; ++i) Expect.Near(1.5 + i, all[i].Time, 1e-5);
+            Expect.Equal(uint.MaxValue, all[0].Triangle);
+            Expect.Equal(2, world.CastAll(at(4), Along(-1, 0, 0), Long, new QueryFilter { Ignored = new[] { row[1] } }).Length);
+            ObjectManifold[] touched = world.ContactManifolds(at(2.3));
+            Expect.Equal(1, touched.Length);
+            Expect.Equal(row[2], touched[0].Object);
+            Expect.Near(0.2, touched[0].Contact.Depth, 1e-6);
+            Expect.Near(-1, touched[0].Contact.Normal.X, 1e-6);
+            Expect.Equal(1, touched[0].Contact.Points.Length);
+            Expect.Equal(0, world.ContactManifolds(at(9)).Length);
+            Expect.Equal(2, world.ContactManifolds(at(1.5), 0.5).Length);
+            Expect.Fails(Status.OutOfRange, () => world.ContactManifolds(at(0), 0, 9));
+            Expect.Fails(Status.Unsupported, () => world.ContactManifolds(floor.At(Here)));
             Expect.Fails(Status.NonFinite, () => world.Cast(at(4), Along(double.NaN, 0, 0)));
             Expect.Fails(Status.Unsupported, () => world.Overlap(floor.At(Here)));
         }

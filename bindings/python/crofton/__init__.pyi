@@ -314,6 +314,7 @@ class ObjectHit:
     normal: Vec3
     started_inside: bool
     triangle: Optional[int]
+    child: int
 
 class ShapeHit:
     object: ObjectHandle
@@ -322,12 +323,24 @@ class ShapeHit:
     normal: Vec3
     point: Vec3
     distance: float
+    triangle: Optional[int]
+    child: int
     resolved: bool
+
+class ObjectManifold:
+    object: ObjectHandle
+    user: int
+    normal: Vec3
+    depth: float
+    points: list[Vec3]
+    depths: list[float]
 
 class Closest:
     object: ObjectHandle
     user: int
     distance: float
+    triangle: Optional[int]
+    child: int
     on_shape: Vec3
     on_object: Vec3
 
@@ -341,6 +354,8 @@ class Contact:
     triangles: Array  # records: first, second, begin (3), end (3), normal (3)
     depths: Array
     points: Array
+    # records: position (3), depth, normal (3), began, kind_a, kind_b, feature_a, feature_b, child_a, triangle_a, child_b, triangle_b
+    shape_points: Array
 
 class Occluder:
     @staticmethod
@@ -411,8 +426,25 @@ class Region:
                 users: Optional[npt.ArrayLike] = None, layers: int = ..., collides_with: int = ...,
                 triangles: bool = True, occluders: bool = False, clusters: bool = False,
                 max_origin: float = 1e9) -> Region: ...
+    @staticmethod
+    def open(path: AnyPath, *, triangles: bool = True, occluders: bool = True, collides_with: int = ..., max_origin: float = 1e9,
+             trust_contents: bool = False) -> Region: ...
     bytes: int
+    bounds: Array
+    def mesh_of(self, place: int) -> Optional[int]: ...
+    def clusters_of(self, mesh: int) -> Optional[ClusteredMesh]: ...
     def __len__(self) -> int: ...
+
+class RegionFile:
+    name: str
+    origin: Vec3
+    bounds: Array
+    objects: int
+    bytes: int
+    def open(self, *, triangles: bool = True, occluders: bool = True, collides_with: int = ..., max_origin: float = 1e9,
+             trust_contents: bool = False) -> Region: ...
+
+def region_files(folder: AnyPath) -> list[RegionFile]: ...
 
 class World:
     def __init__(self, *, pairs: bool = True, contacts: bool = True, containment: bool = True,
@@ -496,6 +528,12 @@ class World:
     def cast(self, shape: Shape, velocity: Vector, pose: Optional[Matrix] = None, *, spin: Vector = ...,
              duration: float = 1.0, ignore_initial_overlaps: bool = False, layers: int = ...,
              ignored: Optional[Objects] = None) -> Optional[ShapeHit]: ...
+    def cast_all(self, shape: Shape, velocity: Vector, pose: Optional[Matrix] = None, *, spin: Vector = ...,
+                 duration: float = 1.0, ignore_initial_overlaps: bool = False, layers: int = ...,
+                 ignored: Optional[Objects] = None) -> list[ShapeHit]: ...
+    def contact_manifolds(self, shape: Shape, pose: Optional[Matrix] = None, *, margin: float = 0.0,
+                          max_points: int = 4, layers: int = ...,
+                          ignored: Optional[Objects] = None) -> list[ObjectManifold]: ...
     pairs: Array
     contacts: list[Contact]
     def box_of(self, object: ObjectHandle) -> Box: ...

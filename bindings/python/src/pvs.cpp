@@ -232,12 +232,9 @@ Pvs open(const py::object& given, std::uint64_t most_pairs) {
 
 Pvs from_bytes(const py::bytes& given, std::uint64_t most_pairs) {
     const std::string_view text = given;
-    // Memory that starts at a multiple of 64.
-    std::vector<std::byte> room(text.size() + 64);
-    const std::size_t past = reinterpret_cast<std::uintptr_t>(room.data()) % 64;
-    std::byte* const start = room.data() + (past == 0 ? 0 : 64 - past);
-    if (!text.empty()) std::memcpy(start, text.data(), text.size());
-    return value_of(Pvs::from_memory({start, text.size()}, {most_pairs}));
+    const auto* const first = reinterpret_cast<const std::byte*>(text.data());
+    const Vector<std::byte> copied(first, first + text.size());  // starts at a multiple of 64
+    return value_of(Pvs::from_memory(copied, {most_pairs}));
 }
 
 py::bytes to_bytes(const Pvs& sets) {

@@ -427,6 +427,9 @@ void bind_world_changes(py::module_& module, py::class_<PyWorld>& type) {
             d["moving"] = s.moving;
             d["boxes_changed"] = s.boxes_changed;
             d["out_of_range"] = s.out_of_range;
+            d["box_pairs_tested"] = s.box_pairs_tested;
+            d["contact_pairs_tested"] = s.contact_pairs_tested;
+            d["occluders_waiting"] = s.occluders_waiting;
             return d;
         });
 }

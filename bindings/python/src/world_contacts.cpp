@@ -7,6 +7,31 @@
 namespace crofton::python {
 namespace {
 
+// A point of two shapes.
+struct ShapePointRecord {
+    double position[3], depth, normal[3];
+    bool began;
+    std::uint8_t kind_a, kind_b;  // 0 a vertex, 1 an edge, 2 a face
+    std::uint16_t feature_a, feature_b;
+    std::uint32_t child_a, triangle_a, child_b, triangle_b;
+};
+
+ShapePointRecord record_of(const convex::TrackedPoint& point) {
+    const auto& [position, depth, on_a, on_b, part_a, part_b] = point.contact;
+    return {{position.x, position.y, position.z},
+            depth,
+            {point.normal.x, point.normal.y, point.normal.z},
+            point.began,
+            static_cast<std::uint8_t>(on_a.kind),
+            static_cast<std::uint8_t>(on_b.kind),
+            on_a.index,
+            on_b.index,
+            part_a.child,
+            part_a.triangle,
+            part_b.child,
+            part_b.triangle};
+}
+
 // A copy of a Contact, whose spans end with the next update.
 struct ContactCopy {
     ObjectRef first, second;
@@ -16,6 +41,7 @@ struct ContactCopy {
     double depth;
     std::vector<collide::ContactPoint> points;
     std::vector<mesh::MeshContact> triangles;
+    std::vector<ShapePointRecord> shape_points;
 };
 
 ContactCopy copy_of(const Contact& c) {
@@ -26,9 +52,12 @@ ContactCopy copy_of(const Contact& c) {
                        c.normal,
                        c.depth,
                        {c.points.begin(), c.points.end()},
-                       {c.triangles.begin(), c.triangles.end()}};
-    for (const convex::TrackedPoint& point : c.shape_points)
+                       {c.triangles.begin(), c.triangles.end()},
+                       {}};
+    for (const convex::TrackedPoint& point : c.shape_points) {
         result.points.push_back({point.contact.position, point.contact.depth});
+        result.shape_points.push_back(record_of(point));
+    }
     return result;
 }
 
@@ -72,6 +101,8 @@ py::array pairs_of(const PyWorld& world) {
 }  // namespace
 
 void bind_world_contacts(py::module_& module, py::class_<PyWorld>& type) {
+    PYBIND11_NUMPY_DTYPE(ShapePointRecord, position, depth, normal, began, kind_a, kind_b, feature_a, feature_b,
+                         child_a, triangle_a, child_b, triangle_b);
     py::class_<ContactCopy>(module, "Contact", "Two objects that touch, or stopped touching in this update.")
         .def_property_readonly("first", [](const ContactCopy& c) { return c.first; })
         .def_property_readonly("second", [](const ContactCopy& c) { return c.second; })
@@ -94,6 +125,11 @@ void bind_world_contacts(py::module_& module, py::class_<PyWorld>& type) {
                 return array_of<double>(depths);
             },
             "depth at each of `points`; negative for a gap")
+        .def_property_readonly(
+            "shape_points", [](const ContactCopy& c) { return array_of<ShapePointRecord>(c.shape_points); },
+            "of two shapes: records of position, depth, normal; began, False while the same features touch as in the "
+            "last update; the features, by kind (0 a vertex, 1 an edge, 2 a face) and number; and the parts: a "
+            "compound's child, a surface's triangle")
         .def("__repr__",
              [](const ContactCopy& c) {
                  return format("Contact(%llu and %llu, %s, depth=%g, %d points)",

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What rays and shapes meet in a World, and what is known of its objects.
 #include <pybind11/stl.h>
+#include <crofton/world/object_manifold.hpp>
 
 #include <limits>
 
@@ -165,6 +166,40 @@ std::optional<ShapeHit> cast(const PyWorld& world, const PyShape& shape, const p
         world.ask([&](const World& w) { return w.cast(*shape.shape, pose, motion, options, filter.get()); }));
 }
 
+py::list cast_all(const PyWorld& world, const PyShape& shape, const py::handle& velocity, const py::object& given_pose,
+                  const py::handle& spin, double duration, bool ignore_initial_overlaps, std::uint32_t layers,
+                  const py::handle& ignored) {
+    const Filter filter(layers, ignored);
+    convex::Motion motion;
+    motion.velocity = vector_of(velocity, "velocity");
+    motion.spin = vector_of(spin, "spin");
+    const RigidTransform pose = pose_of(given_pose, "pose");
+    const convex::CastOptions options{.duration = duration, .ignore_initial_overlaps = ignore_initial_overlaps};
+    Vector<ShapeHit> hits;
+    value_of(
+        world.ask([&](const World& w) { return w.cast_all(*shape.shape, pose, motion, options, hits, filter.get()); }));
+    py::list result;
+    for (const ShapeHit& hit : hits) result.append(hit);
+    return result;
+}
+
+py::list contact_manifolds(const PyWorld& world, const PyShape& shape, const py::object& given_pose, double margin,
+                           int max_points, std::uint32_t layers, const py::handle& ignored) {
+    const Filter filter(layers, ignored);
+    const RigidTransform pose = pose_of(given_pose, "pose");
+    Vector<ObjectManifold> found;
+    value_of(world.ask([&](const World& w) {
+        return w.contact_manifolds(*shape.shape, pose, {margin, max_points}, found, filter.get());
+    }));
+    py::list result;
+    for (const ObjectManifold& manifold : found) result.append(manifold);
+    return result;
+}
+
+py::object triangle_or_none(std::uint32_t triangle) {
+    return triangle == kNoTriangle ? py::object(py::none()) : py::object(py::int_(triangle));
+}
+
 }  // namespace
 
 void bind_world_queries(py::module_& module, py::class_<PyWorld>& type) {
@@ -190,9 +225,8 @@ void bind_world_queries(py::module_& module, py::class_<PyWorld>& type) {
                  return format("ObjectHit(user=%llu, t=%g, point=(%g, %g, %g))",
                                static_cast<unsigned long long>(h.user), h.t, h.point.x, h.point.y, h.point.z);
              })
-        .def_property_readonly("triangle", [](const ObjectHit& h) {
-            return h.triangle == kNoTriangle ? py::object(py::none()) : py::object(py::int_(h.triangle));
-        });
+        .def_property_readonly("triangle", [](const ObjectHit& h) { return triangle_or_none(h.triangle); })
+        .def_readonly("child", &ObjectHit::child, "which child of a compound");
     py::class_<ShapeHit>(module, "ShapeHit", "The first object that a moving shape hits.")
         .def_readonly("object", &ShapeHit::object)
         .def_readonly("user", &ShapeHit::user)
@@ -202,6 +236,8 @@ void bind_world_queries(py::module_& module, py::class_<PyWorld>& type) {
         .def_property_readonly("point", [](const ShapeHit& h) { return tuple_of(h.point); })
         .def_readonly("distance", &ShapeHit::distance,
                       "the gap at that time; if negative, how deep they overlap at the start")
+        .def_property_readonly("triangle", [](const ShapeHit& h) { return triangle_or_none(h.triangle); })
+        .def_readonly("child", &ShapeHit::child, "which child of a compound")
         .def_readonly("resolved", &ShapeHit::resolved,
                       "False if the search ended early: nothing is hit up to `time`, and later is not known")
         .def("__repr__", [](const ShapeHit& h) {
@@ -216,8 +252,38 @@ void bind_world_queries(py::module_& module, py::class_<PyWorld>& type) {
              [](const ClosestObject& c) {
                  return format("Closest(user=%llu, distance=%g)", static_cast<unsigned long long>(c.user), c.distance);
              })
+        .def_property_readonly("triangle", [](const ClosestObject& c) { return triangle_or_none(c.triangle); })
+        .def_readonly("child", &ClosestObject::child, "which child of a compound")
         .def_property_readonly("on_shape", [](const ClosestObject& c) { return tuple_of(c.on_shape); })
         .def_property_readonly("on_object", [](const ClosestObject& c) { return tuple_of(c.on_object); });
+    py::class_<ObjectManifold>(module, "ObjectManifold", "Where a shape touches an object, in one direction.")
+        .def_readonly("object", &ObjectManifold::object)
+        .def_readonly("user", &ObjectManifold::user)
+        .def_property_readonly(
+            "normal", [](const ObjectManifold& m) { return tuple_of(m.manifold.normal); },
+            "unit, from the shape to the object")
+        .def_property_readonly(
+            "depth", [](const ObjectManifold& m) { return m.manifold.depth; }, "of the deepest point; negative: a gap")
+        .def_property_readonly(
+            "points",
+            [](const ObjectManifold& m) {
+                py::list points;
+                for (int k = 0; k < m.manifold.count; ++k) points.append(tuple_of(m.manifold.points[k].position));
+                return points;
+            },
+            "midway between the surfaces")
+        .def_property_readonly(
+            "depths",
+            [](const ObjectManifold& m) {
+                py::list depths;
+                for (int k = 0; k < m.manifold.count; ++k) depths.append(m.manifold.points[k].depth);
+                return depths;
+            },
+            "of the points")
+        .def("__repr__", [](const ObjectManifold& m) {
+            return format("ObjectManifold(user=%llu, depth=%g, %d points)", static_cast<unsigned long long>(m.user),
+                          m.manifold.depth, m.manifold.count);
+        });
     add_method(type, "raycast", &raycast_method,
                "raycast($self, origin, direction, max_t=inf, layers=None, ignored=None)\n--\n\n"
                "Returns the nearest ObjectHit, or None.");
@@ -260,6 +326,14 @@ void bind_world_queries(py::module_& module, py::class_<PyWorld>& type) {
              py::arg("spin") = py::make_tuple(0.0, 0.0, 0.0), py::arg("duration") = 1.0,
              py::arg("ignore_initial_overlaps") = false, py::arg("layers") = ~0u, py::arg("ignored") = py::none(),
              "Moves and turns a Shape from `pose` and returns its first ShapeHit, or None.")
+        .def("cast_all", &cast_all, py::arg("shape"), py::arg("velocity"), py::arg("pose") = py::none(), py::kw_only(),
+             py::arg("spin") = py::make_tuple(0.0, 0.0, 0.0), py::arg("duration") = 1.0,
+             py::arg("ignore_initial_overlaps") = false, py::arg("layers") = ~0u, py::arg("ignored") = py::none(),
+             "Moves and turns a Shape from `pose` and returns the first ShapeHit with each object, ordered by time.")
+        .def("contact_manifolds", &contact_manifolds, py::arg("shape"), py::arg("pose") = py::none(), py::kw_only(),
+             py::arg("margin") = 0.0, py::arg("max_points") = 4, py::arg("layers") = ~0u,
+             py::arg("ignored") = py::none(),
+             "Returns where a Shape at `pose`, which need not be an object, touches the objects, as ObjectManifolds.")
         .def(
             "box_of",
             [](const PyWorld& world, ObjectHandle object) {

@@ -2,6 +2,8 @@
 // Regions: parts of a world that are prepared on any thread.
 #include <pybind11/stl.h>
 
+#include <crofton/bake/region_files.hpp>
+
 #include "world.hpp"
 
 namespace crofton::python {
@@ -58,9 +60,92 @@ Region prepare(const py::object& boxes, const std::vector<Instances>& instances,
     }));
 }
 
+std::string path_of(const py::object& given) {
+    return py::module_::import("os").attr("fsencode")(given).cast<py::bytes>();
+}
+
+bake::BakedRegionOptions options_of(bool triangles, bool occluders, std::uint32_t collides_with, double max_origin,
+                                    bool trust_contents) {
+    bake::BakedRegionOptions options;
+    options.triangles = triangles;
+    options.occluders = occluders;
+    options.collides_with = collides_with;
+    options.region.max_origin = max_origin;
+    options.trust_contents = trust_contents;
+    return options;
+}
+
+Region open(const py::object& given, bool triangles, bool occluders, std::uint32_t collides_with, double max_origin,
+            bool trust_contents) {
+    const std::string path = path_of(given);
+    const auto options = options_of(triangles, occluders, collides_with, max_origin, trust_contents);
+    const auto threads = executor();
+    return value_of(unlocked([&]() -> Result<Region> {
+        auto scene = bake::BakedScene::open(path, *threads);
+        if (!scene) return scene.error();
+        return bake::prepare_region(std::move(*scene), options, *threads);
+    }));
+}
+
+// One of a folder's regions.
+struct PyRegionFile {
+    std::string folder;
+    bake::RegionFile file;
+};
+
+std::vector<PyRegionFile> region_files(const py::object& given) {
+    const std::string folder = path_of(given);
+    std::vector<PyRegionFile> result;
+    for (auto& file : value_of(unlocked([&] { return bake::open_region_index(folder); })))
+        result.push_back({folder, std::move(file)});
+    return result;
+}
+
+py::array corners_of(const Aabb& bounds) {
+    py::array_t<double> result({2, 3});
+    for (int k = 0; k < 3; ++k) result.mutable_at(0, k) = bounds.min[k], result.mutable_at(1, k) = bounds.max[k];
+    return result;
+}
+
+void bind_region_files(py::module_& module) {
+    const auto keywords = [](auto define) {
+        const bake::BakedRegionOptions defaults;
+        return define(py::kw_only(), py::arg("triangles") = defaults.triangles,
+                      py::arg("occluders") = defaults.occluders, py::arg("collides_with") = defaults.collides_with,
+                      py::arg("max_origin") = defaults.region.max_origin, py::arg("trust_contents") = false);
+    };
+    auto type = py::class_<PyRegionFile>(module, "RegionFile", "One region of a folder; region_files() lists them.");
+    type.def_property_readonly("name", [](const PyRegionFile& f) { return f.file.name; })
+        .def_property_readonly(
+            "origin", [](const PyRegionFile& f) { return tuple_of(f.file.origin); }, "where to attach it")
+        .def_property_readonly(
+            "bounds", [](const PyRegionFile& f) { return corners_of(f.file.bounds); },
+            "two corners of a box around its objects, relative to the origin")
+        .def_property_readonly("objects", [](const PyRegionFile& f) { return f.file.objects; })
+        .def_property_readonly("bytes", [](const PyRegionFile& f) { return f.file.bytes; })
+        .def("__repr__", [](const PyRegionFile& f) {
+            return format("RegionFile(%s, %llu objects)", f.file.name.c_str(),
+                          static_cast<unsigned long long>(f.file.objects));
+        });
+    keywords([&](auto... options) {
+        type.def(
+            "open",
+            [](const PyRegionFile& f, bool triangles, bool occluders, std::uint32_t collides_with, double max_origin,
+               bool trust_contents) {
+                const auto given = options_of(triangles, occluders, collides_with, max_origin, trust_contents);
+                const auto threads = executor();
+                return value_of(unlocked([&] { return bake::open_region(f.folder, f.file, given, {}, *threads); }));
+            },
+            options..., "Its Region, as Region.open. Also an error: the file is not that of the index.");
+    });
+    module.def("region_files", &region_files, py::arg("folder"),
+               "The regions of a folder that `crofton bake --regions` has written.");
+}
+
 }  // namespace
 
 void bind_world_regions(py::module_& module, py::class_<PyWorld>& type) {
+    bind_region_files(module);
     py::class_<Region>(module, "Region",
                        "Many objects that do not move, with all that is built over them. Prepare it on any thread and "
                        "attach it to a World, at one origin or several.")
@@ -71,7 +156,35 @@ void bind_world_regions(py::module_& module, py::class_<PyWorld>& type) {
                     "Objects: the boxes, then for each pair (Mesh, matrices of shape (n, 4, 4)) of `instances` one an "
                     "instance. Coordinates are relative to the region's origin. Error.item is the object's place, or "
                     "the pair's.")
+        .def_static("open", &open, py::arg("path"), py::kw_only(), py::arg("triangles") = true,
+                    py::arg("occluders") = true, py::arg("collides_with") = ~0u,
+                    py::arg("max_origin") = RegionOptions{}.max_origin, py::arg("trust_contents") = false,
+                    "A region of a baked file. The object at place i is instance i, with the user number i; meshes "
+                    "have the file's numbers. Without `occluders` its objects hide nothing, and it takes half of the "
+                    "time. `trust_contents` does not check the file's bounds: for files of your own.")
         .def_property_readonly("bytes", &Region::bytes)
+        .def_property_readonly(
+            "bounds", [](const Region& region) { return corners_of(region.bounds()); },
+            "two corners of a box around all objects, relative to the origin")
+        .def(
+            "mesh_of",
+            [](const Region& region, std::uint32_t place) -> py::object {
+                if (place >= region.object_count())
+                    raise({ErrorCode::out_of_range, place, "the region has no object at that place"});
+                const std::uint32_t mesh = region.mesh_of(place);
+                return mesh == kNoIndex ? py::none() : py::object(py::int_(mesh));
+            },
+            py::arg("place"), "The number of an object's mesh; None if it has none.")
+        .def(
+            "clusters_of",
+            [](const Region& region, std::uint32_t mesh) -> std::shared_ptr<depth::ClusteredMesh> {
+                const depth::ClusteredMesh* const cut = region.clusters_of(mesh);
+                if (cut == nullptr) return nullptr;
+                auto copy = std::make_shared<depth::ClusteredMesh>(*cut);
+                copy->keep_copy();
+                return copy;
+            },
+            py::arg("mesh"), "The clusters of a mesh, to which a view's triangles refer; None: no such mesh, or none.")
         .def("__len__", &Region::object_count)
         .def("__repr__", [](const Region& region) { return format("Region(%zu objects)", region.object_count()); });
     type.def(

@@ -130,7 +130,7 @@ def test_pickle_and_copy_refuse_by_name(protocol):
             copy.copy(thing)
 
 
-@pytest.mark.parametrize("answer", [crofton.ShapeHit, crofton.ObjectHit, crofton.Contact, crofton.ViewResult])
+@pytest.mark.parametrize("answer", [crofton.ShapeHit, crofton.ObjectManifold, crofton.ObjectHit, crofton.Contact, crofton.ViewResult])
 def test_answers_are_made_by_calls_alone(answer):
     for make in (answer, lambda: answer.__new__(answer)):
         with pytest.raises(TypeError, match="constructor"):

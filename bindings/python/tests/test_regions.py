@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Regions: parts of a world that are prepared on any thread."""
+import pathlib
+import shutil
+import subprocess
 import threading
 
 import numpy as np
@@ -69,3 +72,54 @@ def test_regions_are_prepared_while_a_world_is_asked():
         world.attach(region, (200.0 * k, 0, 0))
     world.update()
     assert len(world) == 8000
+
+
+def command(*arguments):
+    """Runs the command line, where it has been built or is installed."""
+    built = pathlib.Path(__file__).parents[3] / "build/release/bin/crofton"
+    program = str(built) if built.exists() else shutil.which("crofton")
+    if not program:
+        pytest.skip("there is no command line")
+    subprocess.run([program, *map(str, arguments)], check=True, stdout=subprocess.DEVNULL)
+
+
+def test_a_folder_of_regions_is_opened(tmp_path):
+    command("bake", "town", "--instances", 400, "--regions", "2x2", "--folder", tmp_path)
+    files = crofton.region_files(tmp_path)
+    assert len(files) == 4 and repr(files[0]).startswith(f"RegionFile({files[0].name}, ")
+    world = crofton.World()
+    for file in files:
+        assert file.bytes == (tmp_path / file.name).stat().st_size
+        region, same = file.open(), crofton.Region.open(tmp_path / file.name)
+        assert len(region) == len(same) == file.objects
+        np.testing.assert_array_equal(region.bounds, same.bounds)
+        assert (file.bounds[0] <= file.bounds[1]).all()
+        mesh = region.mesh_of(0)
+        cut = region.clusters_of(mesh)
+        assert len(cut) > 0 and cut.clusters["triangle_count"].sum() == len(cut.triangle_order)
+        assert region.clusters_of(10**6) is None
+        with pytest.raises(crofton.Error) as raised:
+            region.mesh_of(len(region))
+        assert (raised.value.code, raised.value.item) == ("out_of_range", len(region))
+        world.attach(region, file.origin)
+    world.update()
+    assert len(world) == sum(file.objects for file in files)
+    while waiting := world.statistics["occluders_waiting"]:
+        world.update()
+        assert world.statistics["occluders_waiting"] < waiting
+    boxes_alone = files[0].open(triangles=False, occluders=False, collides_with=0, trust_contents=True)
+    assert boxes_alone.bytes < files[0].open().bytes
+    (tmp_path / files[0].name).write_bytes(b"no region")
+    for call in (files[0].open, lambda: crofton.Region.open(tmp_path / files[0].name)):
+        with pytest.raises(crofton.Error) as raised:
+            call()
+        assert raised.value.code == "parse" and files[0].name in str(raised.value)
+    with pytest.raises(crofton.Error) as raised:
+        crofton.region_files(tmp_path / "none")
+    assert raised.value.code == "input/output"
+
+
+def test_an_object_without_a_mesh_has_none():
+    region = crofton.Region.prepare(crofton.boxes([(0, 0, 0)], 0.5))
+    assert region.mesh_of(0) is None
+    np.testing.assert_allclose(region.bounds, [[-0.5] * 3, [0.5] * 3])  # rounded outward

@@ -566,3 +566,57 @@ def test_queries_ignore_objects(world):
     world.remove(first)
     world.update()
     assert world.raycast(*ray, ignored=first).object == second  # stale: without effect
+
+
+def test_a_shape_that_is_no_object_is_cast_through_all_and_touches(world, cube):
+    mesh = world.add_mesh(*cube)
+    near = world.add(mesh=mesh, transform=at(0, 0, -5), user=7)
+    world.add(mesh=mesh, transform=at(0, 0, -10), user=8)
+    world.add(bound=crofton.Sphere((0, 0, -15), 1), user=9)
+    world.update()
+    ball = crofton.Shape.sphere(0.5)
+    hits = world.cast_all(ball, (0, 0, -20))
+    assert [h.user for h in hits] == [7, 8, 9]
+    assert [h.time for h in hits] == pytest.approx([3.5 / 20, 8.5 / 20, 13.5 / 20], abs=1e-6)
+    assert hits[0].triangle in range(12) and hits[2].triangle is None and hits[0].child == 0
+    assert [h.user for h in world.cast_all(ball, (0, 0, -20), ignored=[near])] == [8, 9]
+    assert world.cast_all(ball, (0, 20, 0)) == []
+
+    touched = world.contact_manifolds(ball, at(0, 0, -15.0 + 1.3))
+    (manifold,) = touched
+    assert manifold.user == 9 and manifold.depth == pytest.approx(0.2)
+    assert manifold.normal == pytest.approx((0, 0, -1))
+    assert manifold.points[0] == pytest.approx((0, 0, -14.1)) and manifold.depths == pytest.approx([0.2])
+    assert repr(manifold) == "ObjectManifold(user=9, depth=0.2, 1 points)"
+    assert world.contact_manifolds(ball, at(0, 0, 5)) == []
+    assert len(world.contact_manifolds(ball, at(0, 0, -3.3), margin=0.5)) == 1
+    closest = world.closest(100, sphere=((0, 0, -3), 0.1))
+    assert closest.triangle in range(12) and closest.child == 0
+    with pytest.raises(ValueError, match="margin"):
+        world.contact_manifolds(ball, margin=-1)
+    with pytest.raises(ValueError, match="points"):
+        world.contact_manifolds(ball, max_points=9)
+
+
+def test_points_of_shapes_name_their_features_and_parts(world):
+    floor = crofton.Shape.compound([(crofton.Shape.box((9, 1, 9)), at(0, -1, 0)), (crofton.Shape.sphere(1), at(0, 0, 50))])
+    cube = world.add(shape=crofton.Shape.box((1, 1, 1)), transform=at(0, 0.99, 0), user=1)
+    world.add(shape=floor, user=2)
+    world.update()
+    (contact,) = world.contacts
+    points = contact.shape_points
+    assert len(points) == 4 and points["began"].all()
+    np.testing.assert_array_equal(points["position"], contact.points)
+    np.testing.assert_array_equal(points["depth"], contact.depths)
+    np.testing.assert_allclose(points["normal"], [(0, -1, 0)] * 4, atol=1e-9)
+    # Corners of the cube, of which each has a number, on the floor's first child.
+    assert (points["kind_a"] == 0).all() and len(set(points["feature_a"])) == 4
+    assert (points["kind_b"] == 2).all() and (points["child_b"] == 0).all()
+    world.set_transform(cube, at(0.01, 0.99, 0))
+    world.update()
+    (later,) = world.contacts
+    assert not later.shape_points["began"].any()
+    assert set(later.shape_points["feature_a"]) == set(points["feature_a"])
+    world.set_transform(cube, at(0, 9, 0))
+    world.update()
+    assert len(world.contacts[0].shape_points) == 0

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //! Descriptions of objects: meshes, bounds, transforms.
 use crate::error::wrong;
+use crate::world::as_pointer;
 #[cfg(doc)]
 use crate::World;
 use crate::{sys, ClusteredMesh, Error, Mesh, Node, Obb, Result, Shape, Status, Transform};
@@ -167,6 +168,25 @@ impl<'a> Description<'a> {
             only_occludes: false,
             hidden: false,
             shape: None,
+        }
+    }
+    // `bound`: that of the description, as the library has it.
+    pub(crate) fn raw(&self, bound: *const sys::Bound) -> sys::ObjectDescription {
+        sys::ObjectDescription {
+            size: size_of::<sys::ObjectDescription>(),
+            user: self.user,
+            bound,
+            transform: as_pointer(&self.transform),
+            has_mesh: self.mesh.is_some() as u32,
+            has_node: self.node.is_some() as u32,
+            mesh: self.mesh.unwrap_or(Mesh { index: u32::MAX, generation: 0 }),
+            node: self.node.unwrap_or(Node { index: u32::MAX, generation: 0 }),
+            layers: self.layers,
+            collides_with: self.collides_with,
+            occludes: self.occludes as u32,
+            only_occludes: self.only_occludes as u32,
+            shape: self.shape.map_or(ptr::null(), |s| s.raw as *const _),
+            hidden: self.hidden as u32,
         }
     }
     /// Describes an object with a mesh.

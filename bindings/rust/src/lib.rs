@@ -18,12 +18,15 @@
 //! Positions are `f64` in world coordinates, which are right-handed; angles are in radians. Queries answer as of the
 //! last [`World::update`]. Many threads may query a `&World` at once.
 #![warn(missing_docs)]
+mod baked;
+mod broadphase;
 mod depth;
 mod description;
 mod error;
 mod fit;
 mod geometry;
 mod jobs;
+mod log;
 mod occlusion;
 mod queries;
 mod regions;
@@ -34,7 +37,11 @@ mod triangulate;
 mod views;
 mod world;
 
-pub use depth::{ClusteredMesh, DepthCuller, DepthObject, DepthReceiver};
+pub use baked::{
+    BakedInstance, BakedMesh, BakedNode, BakedRegionOptions, BakedScene, Pvs, PvsMode, RegionFile, RegionIndex,
+};
+pub use broadphase::{Broadphase, Filter, Pair, Pairs};
+pub use depth::{ClusteredMesh, DepthCuller, DepthObject, DepthReceiver, IndexOrder};
 pub use description::{Bound, Description, Indices, MeshData, Vertices};
 pub use error::{Error, Result, Status};
 pub use fit::{fit, fit_boxes, Criterion, Points, Quality};
@@ -43,19 +50,20 @@ pub use geometry::{
     Projection, Ray, Separation, Transform, Verdict,
 };
 pub use jobs::{Executor, Threads};
+pub use log::{log, set_logger, LogLevel, Logger};
 pub use occlusion::{DepthBuffer, FindOptions, Occluder, OccluderRef, OcclusionOptions, OcclusionStatistics};
 pub use queries::{
     Closest, Contact, Containment, Feature, Found, MeshContact, ObjectHit, ObjectPair, Phase, QueryFilter, QueryShape,
 };
-pub use queries::{ShapeHit, TrackedPoint};
-pub use regions::{AttachedRegion, Region, RegionObject, RegionOptions};
+pub use queries::{ObjectManifold, ShapeHit, TrackedPoint};
+pub use regions::{AttachedRegion, Region, RegionInfo, RegionObject, RegionOptions};
 pub use shape::{
     CastOptions, HeightField, Impact, MassProperties, Motion, NearestPoint, Part, Penetration, Placed, Shape,
     ShapeContact, ShapePoint, ShapeRayHit,
 };
 pub use triangulate::{Method, Triangulation, Triangulator};
+pub use views::{view_boxes, ViewMatrix, ViewRequest, ViewResult, VisibleCluster};
 pub use views::{Cluster, ClusterBox, Clusters, DrawLimits, PictureView, Seen, SeenByMany, ShadowReceivers};
-pub use views::{ViewMatrix, ViewRequest, ViewResult, VisibleCluster};
 pub use world::{Mesh, Node, Object, ObjectRef, Statistics, World, WorldOptions};
 
 /// All 32 layers.

@@ -2,7 +2,8 @@
 //! Rays, shapes, pairs and contacts.
 use crate::error::{check, slice};
 use crate::{
-    sys, CastOptions, ContactPoint, Motion, Obb, Object, ObjectRef, Part, Placed, Ray, Result, World, ALL_LAYERS,
+    sys, CastOptions, ContactPoint, Motion, Obb, Object, ObjectRef, Part, Placed, Ray, Result, ShapeContact, World,
+    ALL_LAYERS,
 };
 use std::{mem::size_of, ptr};
 
@@ -102,6 +103,10 @@ pub struct Closest {
     pub on_shape: [f64; 3],
     /// The nearest point of the object.
     pub on_object: [f64; 3],
+    /// The triangle there, of the object's mesh or its shape's surface; `u32::MAX` where there is none.
+    pub triangle: u32,
+    /// The child there, of a compound shape; else 0.
+    pub child: u32,
 }
 
 /// Two objects whose boxes or spheres overlap.
@@ -210,12 +215,25 @@ pub struct ShapeHit {
     pub normal: [f64; 3],
     /// On the object's surface.
     pub point: [f64; 3],
-    /// The triangle of the object's mesh or its shape's surface; else 0.
+    /// The triangle of the object's mesh or its shape's surface; `u32::MAX` where there is none.
     pub triangle: u32,
+    /// The child of a compound shape; else 0.
+    pub child: u32,
     /// The gap at that time; negative: how deep they overlap, from the start.
     pub distance: f64,
     /// True if [`CastOptions::max_steps`] was too small: the shape meets nothing before `time`.
     pub unresolved: bool,
+}
+
+/// Where a shape touches an object, in one direction.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ObjectManifold {
+    /// The object.
+    pub object: Object,
+    /// The object's user number.
+    pub user: u64,
+    /// Its normal leads from the shape to the object.
+    pub contact: ShapeContact,
 }
 
 /// Two objects that touch, or that have ended touching in this update.
@@ -349,7 +367,8 @@ impl World {
             sys::crofton_world_closest(self.raw, &shape.raw(), max_distance, &filter.into().raw(), &mut c)
         })?;
         let (object, user, distance) = (c.object, c.user, c.distance);
-        let closest = Closest { object, user, distance, on_shape: c.on_shape, on_object: c.on_object };
+        let (on_shape, on_object, triangle, child) = (c.on_shape, c.on_object, c.triangle, c.child);
+        let closest = Closest { object, user, distance, on_shape, on_object, triangle, child };
         Ok((object.index != NONE).then_some(closest))
     }
 
@@ -400,16 +419,60 @@ impl World {
         check(unsafe {
             sys::crofton_world_cast(self.raw, &shape.raw(), motion, &options.raw(), &filter.into().raw(), &mut h)
         })?;
-        Ok((h.object.index != NONE).then_some(ShapeHit {
-            object: h.object,
-            user: h.user,
-            time: h.time,
-            normal: h.normal,
-            point: h.point,
-            triangle: h.triangle,
-            distance: h.distance,
-            unresolved: h.result == sys::CAST_UNRESOLVED,
-        }))
+        Ok((h.object.index != NONE).then(|| shape_hit(&h)))
+    }
+    /// Lists the first hit of each object that a moving shape meets, in order of time, then of index.
+    pub fn cast_all<'f>(
+        &self, shape: &Placed, motion: &Motion, options: &CastOptions, filter: impl Into<QueryFilter<'f>>,
+    ) -> Result<Vec<ShapeHit>> {
+        let found = Found::new()?;
+        let (mut hits, mut count) = (ptr::null(), 0);
+        let filter = filter.into();
+        check(unsafe {
+            sys::crofton_world_cast_all(self.raw, &shape.raw(), motion, &options.raw(), &filter.raw(), found.raw)
+        })?;
+        check(unsafe { sys::crofton_found_shape_hits(found.raw, &mut hits, &mut count) })?;
+        Ok(unsafe { slice(hits, count) }.iter().map(shape_hit).collect())
+    }
+    /// Lists where a shape, which need not be an object, touches the objects, up to a margin, in order of index: up to
+    /// `max_points` points a direction, at most 8.
+    pub fn contact_manifolds<'f>(
+        &self, shape: &Placed, margin: f64, max_points: u32, filter: impl Into<QueryFilter<'f>>,
+    ) -> Result<Vec<ObjectManifold>> {
+        let options = sys::ManifoldOptions { size: size_of::<sys::ManifoldOptions>(), margin, max_points };
+        let found = Found::new()?;
+        let (mut manifolds, mut count) = (ptr::null(), 0);
+        let filter = filter.into();
+        check(unsafe {
+            sys::crofton_world_manifolds(self.raw, &shape.raw(), &options, &filter.raw(), found.raw)
+        })?;
+        check(unsafe { sys::crofton_found_manifolds(found.raw, &mut manifolds, &mut count) })?;
+        Ok(unsafe { slice(manifolds, count) }
+            .iter()
+            .map(|m: &sys::ObjectManifold| ObjectManifold {
+                object: m.object,
+                user: m.user,
+                contact: ShapeContact {
+                    normal: m.normal,
+                    depth: m.depth,
+                    points: m.points[..m.point_count as usize].to_vec(),
+                },
+            })
+            .collect())
+    }
+}
+
+fn shape_hit(h: &sys::ShapeHit) -> ShapeHit {
+    ShapeHit {
+        object: h.object,
+        user: h.user,
+        time: h.time,
+        normal: h.normal,
+        point: h.point,
+        triangle: h.triangle,
+        child: h.child,
+        distance: h.distance,
+        unresolved: h.result == sys::CAST_UNRESOLVED,
     }
 }
 

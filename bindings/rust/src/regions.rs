@@ -2,8 +2,8 @@
 //! Parts of a large world that come and go.
 use crate::error::check;
 use crate::jobs::with_jobs;
-use crate::{sys, Bound, Executor, MeshData, Object, Result, Shape, Transform, World};
-use std::ptr;
+use crate::{sys, Bound, Clusters, Executor, MeshData, Object, Result, Shape, Status, Transform, World};
+use std::{mem::size_of, ptr};
 
 /// An object of a [`Region`]. Get it from [`RegionObject::bound`], [`RegionObject::mesh`] or [`RegionObject::shape`] and
 /// change its members.
@@ -148,6 +148,47 @@ impl Region {
             sys::crofton_region_prepare(objects.as_ptr(), objects.len(), &raw_options, jobs, &mut raw)
         }))?;
         Ok(Region { raw })
+    }
+}
+
+/// What a [`Region`] holds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RegionInfo {
+    /// The number of objects.
+    pub object_count: u64,
+    /// Bytes of memory; occluders and clusters are not counted.
+    pub bytes: u64,
+    /// The minimum corner of a box around all objects, relative to the origin; infinite without objects.
+    pub min: [f64; 3],
+    /// The maximum corner.
+    pub max: [f64; 3],
+}
+
+impl Region {
+    pub(crate) fn of(raw: *mut sys::Region) -> Region {
+        Region { raw }
+    }
+    /// Returns what the region holds.
+    pub fn info(&self) -> Result<RegionInfo> {
+        let mut i: sys::RegionInfo = unsafe { std::mem::zeroed() };
+        i.size = size_of::<sys::RegionInfo>();
+        check(unsafe { sys::crofton_region_get_info(self.raw, &mut i) })?;
+        Ok(RegionInfo { object_count: i.object_count, bytes: i.bytes, min: i.min, max: i.max })
+    }
+    /// Returns the mesh of the object at a place, as its number in [`RegionOptions::meshes`] or in the file; `None`: it
+    /// has none.
+    pub fn mesh_of(&self, place: u32) -> Result<Option<u32>> {
+        let mut mesh = 0;
+        check(unsafe { sys::crofton_region_mesh_of(self.raw, place, &mut mesh) })?;
+        Ok((mesh != u32::MAX).then_some(mesh))
+    }
+    /// Returns the clusters of a mesh, to which a view's triangles refer; `None`: there is no such mesh, or it has none.
+    pub fn clusters_of(&self, mesh: u32) -> Result<Option<Clusters<'_>>> {
+        let mut raw: sys::Clusters = unsafe { std::mem::zeroed() };
+        match check(unsafe { sys::crofton_region_clusters_of(self.raw, mesh, &mut raw) }) {
+            Err(error) if error.status == Status::Empty => Ok(None),
+            result => result.map(|()| Some(unsafe { Clusters::of(&raw) })),
+        }
     }
 }
 

@@ -16,7 +16,8 @@ macro_rules! opaque {
         }
     )*};
 }
-opaque!(World, ViewResult, Found, Region, Shape, Triangulator, ClusteredMesh, DepthCuller);
+opaque!(World, ViewResult, Found, Region, Shape, Triangulator, ClusteredMesh, DepthCuller, Broadphase, Tree);
+opaque!(BakedScene, RegionIndex, Pvs);
 
 #[repr(C)]
 pub struct Jobs {
@@ -313,6 +314,7 @@ pub struct ShapeHit {
     pub triangle: u32,
     pub result: u32,
     pub distance: f64,
+    pub child: u32,
 }
 
 #[repr(C)]
@@ -384,6 +386,8 @@ pub struct ClosestObject {
     pub distance: f64,
     pub on_shape: [f64; 3],
     pub on_object: [f64; 3],
+    pub triangle: u32,
+    pub child: u32,
 }
 
 #[repr(C)]
@@ -588,6 +592,16 @@ pub struct ShapeManifold {
 }
 
 #[repr(C)]
+pub struct ObjectManifold {
+    pub object: crate::Object,
+    pub user: u64,
+    pub normal: [f64; 3],
+    pub depth: f64,
+    pub point_count: u32,
+    pub points: [crate::ShapePoint; MAX_MANIFOLD_POINTS],
+}
+
+#[repr(C)]
 pub struct ManifoldOptions {
     pub size: usize,
     pub margin: f64,
@@ -620,12 +634,64 @@ pub struct Triangulation {
     pub optimal: u32,
 }
 
+#[repr(C)]
+pub struct RegionInfo {
+    pub size: usize,
+    pub object_count: u64,
+    pub bytes: u64,
+    pub min: [f64; 3],
+    pub max: [f64; 3],
+}
+
+#[repr(C)]
+pub struct BakedMesh {
+    pub size: usize,
+    pub positions: *const [f32; 3],
+    pub vertex_count: usize,
+    pub colors: *const [f32; 3],
+    pub indices: *const u32,
+    pub index_count: usize,
+    pub name: *const u8,
+    pub name_length: usize,
+    pub bounding_box: crate::Obb,
+    pub one_sided: u32,
+    pub flat: u32,
+    pub unlit: u32,
+    pub reserved: u32,
+}
+
+#[repr(C)]
+pub struct BakedRegionOptions {
+    pub size: usize,
+    pub triangles: u32,
+    pub occluders: u32,
+    pub collides_with: u32,
+    pub trust_contents: u32,
+    pub max_objects: u64,
+    pub max_origin: f64,
+}
+
+#[repr(C)]
+pub struct RegionFile {
+    pub name: *const c_char,
+    pub origin: [f64; 3],
+    pub min: [f64; 3],
+    pub max: [f64; 3],
+    pub objects: u64,
+    pub bytes: u64,
+}
+
 extern "C" {
     pub fn crofton_last_error() -> *const c_char;
     pub fn crofton_last_error_item() -> u64;
     pub fn crofton_status_name(status: c_int) -> *const c_char;
     pub fn crofton_api_version() -> u32;
     pub fn crofton_version_string() -> *const c_char;
+
+    pub fn crofton_set_log_hook(
+        hook: Option<unsafe extern "C" fn(*mut c_void, u32, *const c_char)>, user: *mut c_void,
+    ) -> Status;
+    pub fn crofton_log(level: u32, message: *const c_char) -> Status;
 
     pub fn crofton_default_camera() -> Camera;
     pub fn crofton_default_world_options() -> WorldOptions;
@@ -648,6 +714,22 @@ extern "C" {
     ) -> Status;
     pub fn crofton_classify(
         frustum: *const Frustum, boxes: *const crate::Obb, count: usize, verdicts: *mut u8,
+    ) -> Status;
+    pub fn crofton_view_boxes(
+        boxes: *const crate::Obb, layer_masks: *const u32, count: usize, request: *const ViewRequest,
+        jobs: *const Jobs, result: *mut ViewResult,
+    ) -> Status;
+    pub fn crofton_draw_limits_of_camera(
+        camera: *const Camera, picture_height: f64, pixels: f64, limits: *mut DrawLimits,
+    ) -> Status;
+    pub fn crofton_broadphase_create(broadphase: *mut *mut Broadphase) -> Status;
+    pub fn crofton_broadphase_destroy(broadphase: *mut Broadphase) -> Status;
+    pub fn crofton_broadphase_update(
+        broadphase: *mut Broadphase, boxes: *const crate::Obb, filters: *const crate::Filter, count: usize,
+        jobs: *const Jobs,
+    ) -> Status;
+    pub fn crofton_broadphase_pairs(
+        broadphase: *const Broadphase, which: u32, pairs: *mut *const crate::Pair, count: *mut usize,
     ) -> Status;
     pub fn crofton_boxes_meet(a: *const crate::Obb, b: *const crate::Obb, meet: *mut c_int) -> Status;
     pub fn crofton_boxes_manifold(a: *const crate::Obb, b: *const crate::Obb, manifold: *mut Manifold) -> Status;
@@ -684,6 +766,10 @@ extern "C" {
         mesh: *const Mesh, max_triangles: u32, clustered: *mut *mut ClusteredMesh,
     ) -> Status;
     pub fn crofton_clustered_mesh_destroy(clustered: *mut ClusteredMesh) -> Status;
+    pub fn crofton_clustered_mesh_lend(clustered: *mut ClusteredMesh, mesh: *const Mesh, order: u32) -> Status;
+    pub fn crofton_permute_triangles(
+        clusters: *const Clusters, indices: *const u32, index_count: usize, permuted: *mut u32,
+    ) -> Status;
     pub fn crofton_clustered_mesh_get(clustered: *const ClusteredMesh, clusters: *mut Clusters) -> Status;
     pub fn crofton_clustered_mesh_box(
         clustered: *const ClusteredMesh, cluster: usize, cluster_box: *mut crate::ClusterBox,
@@ -742,6 +828,10 @@ extern "C" {
     pub fn crofton_world_add(
         world: *mut World, description: *const ObjectDescription, object: *mut crate::Object,
     ) -> Status;
+    pub fn crofton_world_add_many(
+        world: *mut World, descriptions: *const ObjectDescription, count: usize, objects: *mut crate::Object,
+    ) -> Status;
+    pub fn crofton_world_reserve(world: *mut World, objects: usize) -> Status;
     pub fn crofton_world_remove(world: *mut World, object: crate::Object) -> Status;
     pub fn crofton_world_set_transforms(
         world: *mut World, objects: *const crate::Object, object_stride: usize, transforms: *const crate::Transform,
@@ -761,6 +851,46 @@ extern "C" {
         region: *mut *mut Region,
     ) -> Status;
     pub fn crofton_region_destroy(region: *mut Region) -> Status;
+    pub fn crofton_region_get_info(region: *const Region, info: *mut RegionInfo) -> Status;
+    pub fn crofton_region_mesh_of(region: *const Region, place: u32, mesh: *mut u32) -> Status;
+    pub fn crofton_region_clusters_of(region: *const Region, mesh: u32, clusters: *mut Clusters) -> Status;
+    pub fn crofton_default_baked_region_options() -> BakedRegionOptions;
+    pub fn crofton_baked_region_open(
+        path: *const c_char, options: *const BakedRegionOptions, jobs: *const Jobs, region: *mut *mut Region,
+    ) -> Status;
+    pub fn crofton_region_index_open(folder: *const c_char, index: *mut *mut RegionIndex) -> Status;
+    pub fn crofton_region_index_destroy(index: *mut RegionIndex) -> Status;
+    pub fn crofton_region_index_files(
+        index: *const RegionIndex, files: *mut *const RegionFile, count: *mut usize,
+    ) -> Status;
+    pub fn crofton_region_index_prepare(
+        index: *const RegionIndex, place: usize, options: *const BakedRegionOptions, jobs: *const Jobs,
+        region: *mut *mut Region,
+    ) -> Status;
+    pub fn crofton_baked_scene_read(
+        path: *const c_char, jobs: *const Jobs, baked: *mut *mut BakedScene, tree: *mut *mut Tree,
+    ) -> Status;
+    pub fn crofton_baked_scene_destroy(baked: *mut BakedScene) -> Status;
+    pub fn crofton_tree_destroy(tree: *mut Tree) -> Status;
+    pub fn crofton_baked_scene_mesh_count(baked: *const BakedScene, count: *mut usize) -> Status;
+    pub fn crofton_baked_scene_mesh(baked: *const BakedScene, mesh_id: u32, mesh: *mut BakedMesh) -> Status;
+    pub fn crofton_baked_scene_clusters(
+        baked: *const BakedScene, mesh_id: u32, clustered: *mut *mut ClusteredMesh,
+    ) -> Status;
+    pub fn crofton_baked_scene_instances(
+        baked: *const BakedScene, instances: *mut *const crate::BakedInstance, count: *mut usize,
+    ) -> Status;
+    pub fn crofton_baked_scene_nodes(
+        baked: *const BakedScene, nodes: *mut *const crate::BakedNode, count: *mut usize,
+    ) -> Status;
+    pub fn crofton_pvs_open(path: *const c_char, pvs: *mut *mut Pvs) -> Status;
+    pub fn crofton_pvs_read(bytes: *const u8, count: usize, pvs: *mut *mut Pvs) -> Status;
+    pub fn crofton_pvs_destroy(pvs: *mut Pvs) -> Status;
+    pub fn crofton_pvs_counts(pvs: *const Pvs, cells: *mut usize, objects: *mut usize) -> Status;
+    pub fn crofton_pvs_find_cell(pvs: *const Pvs, eye: *const f64, cell: *mut u32) -> Status;
+    pub fn crofton_pvs_visible(
+        pvs: *const Pvs, eye: *const f64, mode: u32, words: *mut *const u64, count: *mut usize,
+    ) -> Status;
     pub fn crofton_world_attach(
         world: *mut World, region: *const Region, origin: *const f64, attached: *mut crate::AttachedRegion,
     ) -> Status;
@@ -805,6 +935,10 @@ extern "C" {
         found: *const Found, objects: *mut *const crate::ObjectRef, count: *mut usize,
     ) -> Status;
     pub fn crofton_found_hits(found: *const Found, hits: *mut *const crate::ObjectHit, count: *mut usize) -> Status;
+    pub fn crofton_found_shape_hits(found: *const Found, hits: *mut *const ShapeHit, count: *mut usize) -> Status;
+    pub fn crofton_found_manifolds(
+        found: *const Found, manifolds: *mut *const ObjectManifold, count: *mut usize,
+    ) -> Status;
     pub fn crofton_world_raycast_all(
         world: *const World, ray: *const crate::Ray, filter: *const QueryFilter, found: *mut Found,
     ) -> Status;
@@ -823,6 +957,14 @@ extern "C" {
     pub fn crofton_world_cast(
         world: *const World, probe: *const Placed, motion: *const crate::Motion, options: *const CastOptions,
         filter: *const QueryFilter, hit: *mut ShapeHit,
+    ) -> Status;
+    pub fn crofton_world_cast_all(
+        world: *const World, probe: *const Placed, motion: *const crate::Motion, options: *const CastOptions,
+        filter: *const QueryFilter, found: *mut Found,
+    ) -> Status;
+    pub fn crofton_world_manifolds(
+        world: *const World, probe: *const Placed, options: *const ManifoldOptions, filter: *const QueryFilter,
+        found: *mut Found,
     ) -> Status;
 
     pub fn crofton_world_set_occluders(

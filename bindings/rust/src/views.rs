@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //! Views of a [`World`].
-use crate::error::{check, slice};
+use crate::error::{check, slice, wrong};
 use crate::geometry::to_verdict;
 use crate::jobs::with_jobs;
 use crate::occlusion::{raw_occlusion, statistics_of};
-use crate::{sys, Camera, DepthRange, Executor, Frustum, Mesh, Object, ObjectRef};
+use crate::{sys, Camera, DepthRange, Executor, Frustum, Mesh, Obb, Object, ObjectRef};
 use crate::{OcclusionOptions, OcclusionStatistics, Result, Verdict, World};
 use std::{mem::size_of, ptr};
 
@@ -124,6 +124,16 @@ impl DrawLimits<'_> {
             hysteresis: 1.0,
         }
     }
+    /// Returns limits that leave out what is less than `pixels` wide in a picture `picture_height` pixels high.
+    pub fn of_camera(camera: &Camera, picture_height: f64, pixels: f64) -> Result<Self> {
+        let mut raw = unsafe { sys::crofton_default_draw_limits() };
+        check(unsafe { sys::crofton_draw_limits_of_camera(&camera.raw(), picture_height, pixels, &mut raw) })?;
+        Ok(DrawLimits {
+            max_distance_in_radii: raw.max_distance_in_radii,
+            least_radius: raw.least_radius,
+            ..DrawLimits::new(raw.eye)
+        })
+    }
     fn raw(&self) -> sys::DrawLimits {
         let mut raw = unsafe { sys::crofton_default_draw_limits() };
         raw.eye = self.eye;
@@ -184,6 +194,19 @@ pub struct Clusters<'a> {
 }
 
 impl Clusters<'_> {
+    /// Returns a mesh's indices in the order of its clusters, so that each cluster is one range of an index buffer.
+    pub fn permute(&self, indices: &[u32]) -> Result<Vec<u32>> {
+        let raw = sys::Clusters {
+            clusters: self.clusters.as_ptr(),
+            cluster_count: self.clusters.len(),
+            triangle_order: self.triangle_order.as_ptr(),
+            triangle_count: self.triangle_order.len(),
+        };
+        let mut permuted = vec![0; indices.len()];
+        let (from, count) = (indices.as_ptr(), indices.len());
+        check(unsafe { sys::crofton_permute_triangles(&raw, from, count, permuted.as_mut_ptr()) })?;
+        Ok(permuted)
+    }
     /// # Safety
     /// The arrays live as long as the result.
     pub(crate) unsafe fn of(raw: &sys::Clusters) -> Self {
@@ -334,6 +357,14 @@ impl<'a> Seen<'a> {
     pub fn ids(&self) -> &'a [u32] {
         self.arrays().0
     }
+    /// Returns how many of [`Seen::ids`] lie inside the view as a whole. In tree order they are the first.
+    pub fn inside_count(&self) -> usize {
+        let (mut ids, mut count, mut inside) = (ptr::null(), 0, 0);
+        unsafe {
+            sys::crofton_view_result_ids(self.result.raw, &mut ids, &mut count, ptr::null_mut(), &mut inside);
+        }
+        inside
+    }
     /// Returns a verdict, straddling or inside, for each of [`Seen::ids`].
     pub fn verdicts(&self) -> Vec<Verdict> {
         self.arrays().1.unwrap_or(&[]).iter().map(|&v| to_verdict(v)).collect()
@@ -381,6 +412,30 @@ impl<'a> SeenByMany<'a> {
         check(unsafe { sys::crofton_view_result_list(self.result.raw, self.world.raw, 0, o, m, count) })?;
         Ok(objects.into_iter().zip(masks).collect())
     }
+}
+
+/// Lists the boxes of a slice that a view sees, exactly, without a World; `layers`: one mask for each, or none. Error: a request with
+/// occlusion or a picture. Allocates nothing once `result` has held as many.
+///
+/// ```
+/// use crofton::{view_boxes, Camera, Obb, ViewResult};
+/// # fn main() -> Result<(), crofton::Error> {
+/// let boxes = [[0.0, 0.0, -5.0], [0.0, 0.0, 5.0]].map(|center| Obb::aligned(center, [1.0; 3]));
+/// assert_eq!(view_boxes(&boxes, None, &Camera::default().into(), &mut ViewResult::new()?)?, [0]);
+/// # Ok(()) }
+/// ```
+pub fn view_boxes<'a>(
+    boxes: &[Obb], layers: Option<&[u32]>, request: &ViewRequest, result: &'a mut ViewResult,
+) -> Result<&'a [u32]> {
+    if layers.map_or(false, |l| l.len() != boxes.len()) {
+        return Err(wrong("the two slices are to be of one length"));
+    }
+    let asked = Asked::new(request);
+    let (layers, count, raw) = (layers.map_or(ptr::null(), |l| l.as_ptr()), boxes.len(), asked.raw());
+    check(unsafe { sys::crofton_view_boxes(boxes.as_ptr(), layers, count, &raw, ptr::null(), result.raw) })?;
+    let (mut ids, mut count) = (ptr::null(), 0);
+    check(unsafe { sys::crofton_view_result_ids(result.raw, &mut ids, &mut count, ptr::null_mut(), ptr::null_mut()) })?;
+    Ok(unsafe { slice(ids, count) })
 }
 
 impl World {

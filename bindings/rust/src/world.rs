@@ -53,6 +53,11 @@ pub struct WorldOptions {
     pub max_pairs: u64,
     /// 0; gaps up to this between shapes are contacts.
     pub contact_margin: f64,
+    /// 16; updates without motion after which an object rests again.
+    pub updates_to_rest: u32,
+    /// Items' worth of background work on the tree in each update; 0: none, and no allocation. `u64::MAX`: as many as
+    /// are good.
+    pub rebuild_budget: u64,
 }
 
 impl Default for WorldOptions {
@@ -65,6 +70,8 @@ impl Default for WorldOptions {
             mesh_depth: raw.mesh_depth != 0,
             max_pairs: raw.max_pairs,
             contact_margin: raw.contact_margin,
+            updates_to_rest: raw.updates_to_rest,
+            rebuild_budget: raw.rebuild_budget,
         }
     }
 }
@@ -82,6 +89,12 @@ pub struct Statistics {
     pub boxes_changed: u32,
     /// Objects whose product of transforms is out of range: hidden until it is valid.
     pub out_of_range: u32,
+    /// Pairs of boxes that the last update tested.
+    pub box_pairs_tested: u64,
+    /// Pairs whose shapes or triangles it tested.
+    pub contact_pairs_tested: u64,
+    /// Objects of regions whose occluders are not placed yet; they hide nothing until then.
+    pub occluders_waiting: u64,
 }
 
 /// Owns nodes, meshes and objects. Changes take effect in [`World::update`]; queries answer as of the last one.
@@ -119,6 +132,8 @@ impl World {
         given.mesh_depth = options.mesh_depth as u32;
         given.max_pairs = options.max_pairs;
         given.contact_margin = options.contact_margin;
+        given.updates_to_rest = options.updates_to_rest;
+        given.rebuild_budget = options.rebuild_budget;
         let mut raw = ptr::null_mut();
         check(unsafe { sys::crofton_world_create(&given, &mut raw) })?;
         Ok(World { raw })
@@ -172,28 +187,22 @@ impl World {
     /// Adds an object; queries find it from the next update on.
     pub fn add(&mut self, description: &Description) -> Result<Object> {
         let bound = description.bound.map(|b| b.raw());
-        let none = (u32::MAX, u32::MAX);
-        let mesh = description.mesh.unwrap_or(Mesh { index: none.0, generation: none.1 });
-        let node = description.node.unwrap_or(Node { index: none.0, generation: none.1 });
-        let raw = sys::ObjectDescription {
-            size: size_of::<sys::ObjectDescription>(),
-            user: description.user,
-            bound: as_pointer(&bound),
-            transform: as_pointer(&description.transform),
-            has_mesh: description.mesh.is_some() as u32,
-            has_node: description.node.is_some() as u32,
-            mesh,
-            node,
-            layers: description.layers,
-            collides_with: description.collides_with,
-            occludes: description.occludes as u32,
-            only_occludes: description.only_occludes as u32,
-            shape: description.shape.map_or(ptr::null(), |s| s.raw as *const _),
-            hidden: description.hidden as u32,
-        };
         let mut object = Object { index: 0, generation: 0 };
-        check(unsafe { sys::crofton_world_add(self.raw, &raw, &mut object) })?;
+        check(unsafe { sys::crofton_world_add(self.raw, &description.raw(as_pointer(&bound)), &mut object) })?;
         Ok(object)
+    }
+    /// Adds many objects in one call; `objects[i]` becomes the handle of `descriptions[i]`. Adds all valid ones: the
+    /// error names the first of the others, whose handles are stale from the start.
+    pub fn add_many(&mut self, descriptions: &[Description], objects: &mut Vec<Object>) -> Result<()> {
+        let bounds: Vec<_> = descriptions.iter().map(|d| d.bound.map(|b| b.raw())).collect();
+        let raw: Vec<_> = descriptions.iter().zip(&bounds).map(|(d, bound)| d.raw(as_pointer(bound))).collect();
+        objects.clear();
+        objects.resize(descriptions.len(), Object { index: 0, generation: 0 });
+        check(unsafe { sys::crofton_world_add_many(self.raw, raw.as_ptr(), raw.len(), objects.as_mut_ptr()) })
+    }
+    /// Takes memory for so many objects in all, so that no later call has to copy what the world knows of each.
+    pub fn reserve(&mut self, objects: usize) -> Result<()> {
+        check(unsafe { sys::crofton_world_reserve(self.raw, objects) })
     }
     /// Removes an object; its handle becomes stale.
     pub fn remove(&mut self, object: Object) -> Result<()> {
@@ -268,6 +277,9 @@ impl World {
             moving: s.moving,
             boxes_changed: s.boxes_changed,
             out_of_range: s.out_of_range,
+            box_pairs_tested: s.box_pairs_tested,
+            contact_pairs_tested: s.contact_pairs_tested,
+            occluders_waiting: s.occluders_waiting,
         })
     }
     fn raw_statistics(&self) -> Result<sys::WorldStatistics> {
@@ -332,7 +344,7 @@ fn not_yet(message: &str, object: Object) -> Error {
     Error { status: Status::Empty, message: message.to_owned(), item: Some(object.index as u64) }
 }
 
-fn as_pointer<T>(value: &Option<T>) -> *const T {
+pub(crate) fn as_pointer<T>(value: &Option<T>) -> *const T {
     value.as_ref().map_or(ptr::null(), |v| v as *const T)
 }
 

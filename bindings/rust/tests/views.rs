@@ -368,3 +368,66 @@ fn a_culler_of_its_own_lists_the_same_triangles_and_takes_clusters_that_were_cut
     let other = MeshData { indices: Indices::U32(&[0, 1, 2]), ..precut };
     assert_eq!(world.add_mesh(&other).unwrap_err().status, Status::InvalidArgument);
 }
+
+#[test]
+fn clusters_read_arrays_that_are_lent_and_indices_are_put_in_their_order() {
+    let corners: std::sync::Arc<[[f32; 3]]> =
+        vec![[-3.0, -3.0, 0.0], [3.0, -3.0, 0.0], [3.0, 3.0, 0.0], [-3.0, 3.0, 0.0]].into();
+    let indices = [0, 1, 2, 0, 2, 3];
+    let mut mesh = ClusteredMesh::new(&corners, &indices, 1).unwrap();
+    let permuted = mesh.clusters().unwrap().permute(&indices).unwrap();
+    let order = mesh.clusters().unwrap().triangle_order.to_vec();
+    let expected: Vec<u32> = order.iter().flat_map(|&t| indices[3 * t as usize..][..3].to_vec()).collect();
+    assert_eq!(permuted, expected);
+    assert!(mesh.clusters().unwrap().permute(&indices[3..]).is_err());
+    let other = mesh.lend(corners.clone(), vec![0, 1, 2, 0, 2, 1].into(), IndexOrder::Original).unwrap_err();
+    assert_eq!((other.status, other.item.is_some()), (Status::InvalidArgument, true));
+    mesh.lend(corners.clone(), indices.to_vec().into(), IndexOrder::Original).unwrap();
+    assert_eq!(mesh.clusters().unwrap().triangle_order, order);
+    mesh.lend(corners.clone(), permuted.into(), IndexOrder::Permuted).unwrap();
+    assert!(mesh.clusters().unwrap().triangle_order.is_empty());
+    drop(corners); // the mesh has it still
+    let picture =
+        PictureView { width: 160, height: 90, depth: DepthRange::ReversedZeroToOne, samples: 1, work_limit: 0 };
+    let place = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 1.0, 10.0];
+    let mut culler = DepthCuller::new().unwrap();
+    assert_eq!(culler.find_visible(None, &[DepthObject::new(&mesh, place)], &picture).unwrap().len(), 2);
+}
+
+#[test]
+fn boxes_alone_are_viewed_and_limits_come_from_a_camera() {
+    let boxes: Vec<Obb> = (0..100).map(|i| Obb::aligned([0.0, 0.0, 200.0 - 4.0 * i as f64], [0.5; 3])).collect();
+    let camera = Camera::default();
+    let verdicts = classify(&camera.frustum().unwrap(), &boxes).unwrap();
+    let expected: Vec<u32> = (0..100).filter(|&i| verdicts[i as usize] != Verdict::Outside).collect();
+    assert!(expected.len() > 40);
+    let mut result = ViewResult::new().unwrap();
+    assert_eq!(view_boxes(&boxes, None, &camera.into(), &mut result).unwrap(), expected);
+    let layers: Vec<u32> = (0..100).map(|i| 1 << (i % 2)).collect();
+    let even = ViewRequest { layers: 1, ..camera.into() };
+    let halves: Vec<u32> = expected.iter().copied().filter(|i| i % 2 == 0).collect();
+    assert_eq!(view_boxes(&boxes, Some(&layers), &even, &mut result).unwrap(), halves);
+    assert_eq!(view_boxes(&boxes, Some(&layers[1..]), &even, &mut result).unwrap_err().status, Status::InvalidArgument);
+    let occluded = ViewRequest { occlusion: Some(OcclusionOptions::default()), ..camera.into() };
+    assert_eq!(view_boxes(&boxes, None, &occluded, &mut result).unwrap_err().status, Status::Unsupported);
+    // A sphere around a box has radius sqrt(3) / 2. One pixel of 1000 is d * 2 tan(30 degrees) / 1000 wide at distance d.
+    let limits = DrawLimits::of_camera(&camera, 1000.0, 10.0).unwrap();
+    let farthest = 0.75f64.sqrt() * 2.0 * 1000.0 / (10.0 * 2.0 * (std::f64::consts::PI / 6.0).tan());
+    let near: Vec<u32> = expected.iter().copied().filter(|&i| -boxes[i as usize].center[2] < farthest).collect();
+    assert!(near.len() < expected.len() && near.len() > 10);
+    assert_eq!(
+        view_boxes(&boxes, None, &ViewRequest { limits: Some(&limits), ..camera.into() }, &mut result).unwrap(),
+        near
+    );
+    assert!(DrawLimits::of_camera(&camera, 1000.0, -1.0).is_err());
+}
+
+#[test]
+fn tree_order_says_how_many_lie_inside() {
+    let (world, _) = row(3);
+    let mut visible = ViewResult::new().unwrap();
+    let request = ViewRequest { tree_order: true, ..Camera::default().into() };
+    let seen = world.view(&request, &mut visible).unwrap();
+    assert_eq!((seen.ids().len(), seen.inside_count()), (3, 3));
+    assert_eq!(world.view(&Camera::default().into(), &mut visible).unwrap().inside_count(), 3);
+}

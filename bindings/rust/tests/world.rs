@@ -255,3 +255,64 @@ fn threads_do_each_range_once_whatever_the_grain() {
         assert!(times.iter().all(|t| t.load(Ordering::Relaxed) == 1));
     }
 }
+
+#[test]
+fn many_objects_are_added_at_once_and_those_that_are_refused_are_named() {
+    let mut world = World::new().unwrap();
+    world.reserve(1000).unwrap();
+    assert_eq!(world.reserve(usize::MAX).unwrap_err().status, Status::OutOfRange);
+    let at = |x: f64| Description::bound(Bound::Sphere { center: [x, 0.0, 0.0], radius: 0.25 });
+    let mut all: Vec<Description> = (0..1000).map(|i| at(i as f64).user(i)).collect();
+    let mut objects = Vec::new();
+    world.add_many(&all, &mut objects).unwrap();
+    world.update().unwrap();
+    assert_eq!(world.object_count(), 1000);
+    for (i, object) in objects.iter().enumerate() {
+        assert_eq!((world.user(*object).unwrap(), world.obb(*object).unwrap().center[0]), (i as u64, i as f64));
+    }
+    all.truncate(3);
+    all[1] = at(f64::NAN);
+    let error = world.add_many(&all, &mut objects).unwrap_err();
+    assert_eq!((error.status, error.item), (Status::NonFinite, Some(1)));
+    assert_eq!((world.object_count(), objects.len()), (1002, 3));
+    assert!(world.contains(objects[0]) && !world.contains(objects[1]) && world.contains(objects[2]));
+}
+
+#[test]
+fn pairs_of_boxes_begin_stay_and_end_without_a_world() {
+    let mut broadphase = Broadphase::new().unwrap();
+    let row = |gap: f64| (0..4).map(|i| Obb::aligned([gap * i as f64, 0.0, 0.0], [1.0; 3])).collect::<Vec<_>>();
+    let pair = |first, second| Pair { first, second };
+    broadphase.update(None, &row(1.5), None).unwrap();
+    assert_eq!(broadphase.pairs(Pairs::Began).unwrap(), [pair(0, 1), pair(1, 2), pair(2, 3)]);
+    let alone = [Filter { layers: 1, collides_with: 1 }, Filter { layers: 2, collides_with: 2 }];
+    let filters = [alone[0], alone[1], alone[1], alone[0]];
+    broadphase.update(Some(&Threads(2)), &row(1.5), Some(&filters)).unwrap();
+    assert_eq!(broadphase.pairs(Pairs::Stayed).unwrap(), [pair(1, 2)]);
+    assert_eq!(broadphase.pairs(Pairs::Ended).unwrap(), [pair(0, 1), pair(2, 3)]);
+    assert_eq!(broadphase.update(None, &row(1.5), Some(&alone)).unwrap_err().status, Status::InvalidArgument);
+    broadphase.update(None, &row(3.0), None).unwrap();
+    assert!(broadphase.pairs(Pairs::All).unwrap().is_empty());
+}
+
+#[test]
+fn a_logger_gets_the_messages() {
+    static HEARD: std::sync::Mutex<Vec<(LogLevel, String)>> = std::sync::Mutex::new(Vec::new());
+    unsafe { set_logger(Some(|level, message| HEARD.lock().unwrap().push((level, message.to_owned())))) };
+    log(LogLevel::Info, "from the game").unwrap();
+    unsafe { set_logger(None) };
+    log(LogLevel::Info, "not heard").unwrap();
+    assert_eq!(*HEARD.lock().unwrap(), [(LogLevel::Info, "from the game".to_owned())]);
+    assert_eq!(log(LogLevel::Info, "a\0b").unwrap_err().status, Status::InvalidArgument);
+}
+
+#[test]
+fn options_are_those_of_the_library() {
+    let mut world = World::with(WorldOptions { updates_to_rest: 2, rebuild_budget: 0, ..Default::default() }).unwrap();
+    world.add(&Description::bound(Bound::Sphere { center: [0.0; 3], radius: 1.0 })).unwrap();
+    for _ in 0..4 {
+        world.update().unwrap();
+    }
+    assert_eq!(world.statistics().unwrap().resting, 1);
+    assert_eq!(WorldOptions::default().updates_to_rest, 16);
+}

@@ -9,8 +9,8 @@ import { fitBox } from './fit.js';
 import { Triangulator } from './triangulate.js';
 import { Region } from './region.js';
 import * as queries from './queries.js';
-import { ClusteredMesh, Shape } from './shape.js';
-import { ViewResult } from './views.js';
+import { ClusteredMesh, Shape, permuteTriangles } from './shape.js';
+import { ViewResult, limitsOfCamera } from './views.js';
 import { World } from './world.js';
 
 /** Starts `build`; every class is a member of the result. */
@@ -29,6 +29,8 @@ export async function loadLibrary(build, options = {}) {
         ...Object.fromEntries(Object.entries(queries).map(([name, query]) => [name, (...given) => query(memory, ...given)])),
         cullBoxes: (boxes, frustum, visible, how) => cullBoxes(memory, boxes, frustum, visible, how),
         classify: (boxes, frustum) => classify(memory, boxes, frustum),
+        limitsOfCamera: (camera, pictureHeight, pixels) => limitsOfCamera(memory, camera, pictureHeight, pixels),
+        permuteTriangles,
         fitBox: (points, how) => fitBox(memory, points, how),
         setLogger: (logger) => memory.setLogger(logger),
         log: (level, message) => memory.log(level, message),

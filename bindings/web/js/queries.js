@@ -42,12 +42,14 @@ export function contacts(memory, a, b, { margin = 0, maxPoints = 0 } = {}) {
     memory.call('shapes_manifold', place(memory, at + A, a), place(memory, at + B, b), options, 0, answer);
     const { words, doubles } = memory;
     return { normal: vectorAt(memory, answer + 8), depth: doubles[answer + 32 >> 3],
-        points: Array.from({ length: words[answer + 40 >> 2] }, (_, i) => {
-            const point = answer + 48 + 56 * i;
-            return { position: vectorAt(memory, point), depth: doubles[point + 24 >> 3], partA: partAt(memory, point + 40),
-                partB: partAt(memory, point + 48) };
-        }) };
+        points: pointsAt(memory, answer + 48, words[answer + 40 >> 2]) };
 }
+/** The points of a manifold. */
+export const pointsAt = (memory, at, count) => Array.from({ length: count }, (_, i) => {
+    const point = at + 56 * i;
+    return { position: vectorAt(memory, point), depth: memory.doubles[point + 24 >> 3], partA: partAt(memory, point + 40),
+        partB: partAt(memory, point + 48) };
+});
 
 export function cast(memory, a, motion, b, motionOfB = {}) {
     const at = memory.scratch(BYTES), answer = at + ANSWER, options = at + GIVEN + 144;

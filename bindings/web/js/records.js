@@ -22,7 +22,7 @@ export function withFilter(memory, filter, use) {
     words.set([16, mask, 0, ignored.length]);
     return memory.lend([words], (at) => {
         memory.words[at + 8 >> 2] = at + 16;
-        ignored.forEach((object, i) => giveHandle(memory, object, 'object', at + 16 + 8 * i));
+        ignored.forEach((object, i) => giveHandle(memory, object, 'object', at + 16 + 8 * i, i));
         return use(at);
     });
 }
@@ -35,9 +35,9 @@ export function halvesOf(user) {
 export const userAt = ({ words }, at) => words[at >> 2] + 2 ** 32 * words[(at >> 2) + 1];
 
 /** Writes a handle. Objects, meshes, nodes and regions each count from 0; `kind` tells them apart. */
-export function giveHandle(memory, handle, kind, at) {
+export function giveHandle(memory, handle, kind, at, item) {
     if (handle?.kind !== kind || !Number.isInteger(handle.index) || !Number.isInteger(handle.generation))
-        throw failure(14, `this is no ${kind} of a world`);
+        throw failure(14, `this is no ${kind} of a world`, item);
     memory.words.set([handle.index, handle.generation], at >> 2);
     return at;
 }

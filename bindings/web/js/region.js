@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 import { failure } from './error.js';
 import { Owned, checkRecords, handleOf } from './memory.js';
-import { ALL, halvesOf, layersOf, meshArrays, writeBound, writeMesh, writeTransform } from './records.js';
+import { ALL, clustersAt, halvesOf, layersOf, meshArrays, vectorAt, writeBound, writeMesh, writeTransform } from './records.js';
 
 /**
  * Many objects that do not move, relative to an origin: `World.attach`, which takes microseconds. An object is that of `World.add`, but its
@@ -36,5 +36,30 @@ export class Region extends Owned {
                 }
             });
         super(memory, 'Region', handle, '_crofton_region_destroy');
+    }
+    #info() {
+        const { memory } = this, at = memory.scratch(72);
+        memory.words[at >> 2] = 72;
+        memory.call('region_get_info', this.handle, at);
+        return at;
+    }
+    /** The number of objects. */
+    get count() { return this.memory.words[this.#info() + 8 >> 2]; }
+    /** The box along the axes around all objects, relative to the origin, `{ min, max }`; infinite the wrong way round without objects. */
+    get bounds() {
+        const at = this.#info();
+        return { min: vectorAt(this.memory, at + 24), max: vectorAt(this.memory, at + 48) };
+    }
+    /** The mesh of the object at a place, as its place in `meshes`; -1: it has none. */
+    meshOf(place) {
+        const { memory } = this, at = memory.scratch(8);
+        memory.call('region_mesh_of', this.handle, place, at);
+        return memory.words[at >> 2] | 0;
+    }
+    /** The clusters of a mesh, to which a view's `triangles` refer, as `World.clustersOf`. Error: there is no such mesh, or it has none. */
+    clustersOf(mesh) {
+        const { memory } = this, at = memory.scratch(16);
+        memory.call('region_clusters_of', this.handle, mesh, at);
+        return clustersAt(memory, at);
     }
 }

@@ -129,3 +129,12 @@ export class ClusteredMesh extends Owned {
         }
     }
 }
+
+/** Returns a mesh's indices in the order of its clusters, so that each cluster is one range of an index buffer. */
+export function permuteTriangles({ triangleOrder }, indices) {
+    checkArray(indices, [Uint32Array, Uint16Array], 'indices');
+    if (indices.length !== 3 * triangleOrder.length) throw failure(1, `the clusters have ${triangleOrder.length} triangles, and there are ${indices.length} indices`);
+    const permuted = new indices.constructor(indices.length);
+    triangleOrder.forEach((triangle, i) => permuted.set(indices.subarray(3 * triangle, 3 * triangle + 3), 3 * i));
+    return permuted;
+}

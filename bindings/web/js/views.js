@@ -3,7 +3,7 @@
 import { failure } from './error.js';
 import { Owned, checkArray, checkRecords, create, handleOf, numbersOf } from './memory.js';
 import { DEPTH, writeCamera } from './geometry.js';
-import { ALL, layersOf, trianglesIn } from './records.js';
+import { ALL, layersOf, trianglesIn, vectorAt } from './records.js';
 
 /**
  * The answer of a view of a world, a tree or a list of boxes. Its arrays are valid until its next view or growth of memory. After a view of
@@ -102,6 +102,14 @@ function arraysOf({ candidates, limits = {} }) {
         arrays.push({ array: checkArray(itemDistances, [Float32Array], 'itemDistances'), of: 'limits', place: 13, count: 14, unit: 4 });
     if (drawnBefore) arrays.push({ array: bitsOf(drawnBefore, 'drawnBefore'), of: 'limits', place: 15, count: 16, unit: 8 });
     return arrays;
+}
+
+/** Limits of a view that leave out what is less than `pixels` wide in a picture `pictureHeight` pixels high. */
+export function limitsOfCamera(memory, camera, pictureHeight, pixels) {
+    const at = memory.scratch(256), limits = at + 128, first = limits >> 3;
+    memory.fill('default_draw_limits', limits);
+    memory.call('draw_limits_of_camera', writeCamera(memory, camera, at), pictureHeight, pixels, limits);
+    return { eye: vectorAt(memory, limits + 8), maxDistanceInRadii: memory.doubles[first + 4], leastRadius: memory.doubles[first + 5] };
 }
 
 const REQUEST = 52, PARTS = 512;

@@ -3,20 +3,27 @@ import { failure } from './error.js';
 import { Owned, checkArray, checkGroups, checkRecords, create, handleOf, numbersOf } from './memory.js';
 import { ALL, IDENTITY, clustersAt, giveHandle, halvesOf, handleAt, layersOf, meshArrays, refAt, userAt, vectorAt, withFilter, writeBound, writeBox, writeMesh,
     writeRay, writeTransform } from './records.js';
+import { pointsAt } from './queries.js';
 import { writeCast, writePlaced } from './shape.js';
 import { withRequests } from './views.js';
 
+const DESCRIPTION = 72, PARTS = 160 + 96;
+/** Which triangle and child of an object; -1 where there is no triangle. */
+const placeAt = ({ words }, triangle, child) => ({ triangle: words[triangle >> 2] === ALL ? -1 : words[triangle >> 2], child: words[child >> 2] });
 const PHASES = ['began', 'stayed', 'ended'], INSIDE = ['nothing', 'first', 'second', 'partly'];
 
 /**
  * Holds objects and answers queries about them. Changes take effect in `update`. Objects, meshes, nodes and attached regions are
- * `{ kind, index, generation }`. `pairs`, `contacts`: whether updates find them.
+ * `{ kind, index, generation }`. `pairs`, `contacts`: whether updates find them; with more than `maxPairs` an update fails. An object that did not
+ * move for `updatesToRest` updates rests.
  */
 export class World extends Owned {
-    constructor(memory, { pairs = true, contacts = true, containment = true, meshDepth = false, contactMargin = 0 } = {}) {
+    constructor(memory, { pairs = true, contacts = true, containment = true, meshDepth = false, contactMargin = 0, maxPairs = 2 ** 24, updatesToRest = 16 } = {}) {
         const at = memory.scratch(56), { words } = memory;
         memory.fill('default_world_options', at);
         words.set([pairs, contacts, containment, meshDepth].map(Number), (at >> 2) + 1);
+        words.set(halvesOf(maxPairs), (at >> 2) + 6);
+        words[(at >> 2) + 10] = updatesToRest;
         memory.doubles[(at >> 3) + 6] = contactMargin;
         super(memory, 'World', create(memory, 'world', at), '_crofton_world_destroy');
     }
@@ -113,20 +120,43 @@ export class World extends Owned {
      * under a `node` or in the world. A shape beside another is what rays, casts and contacts use. `user`: a number. `onlyOccludes`: no answer
      * contains the object, but its mesh hides others.
      */
-    add({ box, sphere, mesh, shape, transform, node, user = 0, layers = ALL, collidesWith = ALL, occludes = true, onlyOccludes = false, hidden = false } = {}) {
+    add(object) {
+        const { memory } = this, at = memory.scratch(DESCRIPTION + PARTS + 8);
+        this.#describe(object ?? {}, at, at + DESCRIPTION);
+        memory.call('world_add', this.handle, at, at + DESCRIPTION + PARTS);
+        return handleAt(memory, at + DESCRIPTION + PARTS, 'object');
+    }
+    /** Adds many in one call; returns their handles. If one is refused, the error's item is its place, and none is added. */
+    addMany(objects) {
+        const { memory, handle } = this, count = checkRecords(objects, 'objects').length;
+        return memory.lend([new Uint8Array(DESCRIPTION * count), new Uint8Array(PARTS * count), new Uint8Array(8 * count)], (first, parts, handles) => {
+            objects.forEach((object, i) => this.#describe(object, first + DESCRIPTION * i, parts + PARTS * i, i));
+            const added = () => objects.map((_, i) => handleAt(memory, handles + 8 * i, 'object'));
+            try {
+                memory.call('world_add_many', handle, first, count, handles);
+            } catch (error) {
+                for (const object of added()) if (object.generation) this.remove(object);
+                throw error;
+            }
+            return added();
+        });
+    }
+    /** Takes memory for so many objects in all, so that no later call has to copy what the world knows of each. */
+    reserve(objects) { this.memory.call('world_reserve', this.handle, objects); }
+    // Writes 72 bytes of a description, and 256 of its parts.
+    #describe({ box, sphere, mesh, shape, transform, node, user = 0, layers = ALL, collidesWith = ALL, occludes = true, onlyOccludes = false, hidden = false },
+        at, parts, item) {
         const given = [box, sphere, mesh].filter(Boolean).length;
-        if (given > 1 || given === 0 && !shape) throw failure(1, 'an object has one of box, sphere and mesh, or only a shape');
-        const { memory } = this, at = memory.scratch(72 + 160 + 96 + 16), { words } = memory, first = at >> 2;
+        if (given > 1 || given === 0 && !shape) throw failure(1, 'an object has one of box, sphere and mesh, or only a shape', item);
+        const { memory } = this, { words } = memory, first = at >> 2;
         memory.fill('default_object_description', at);
         words.set(halvesOf(user), first + 2);
-        if (box || sphere) writeBound(memory, at + 72, { box, sphere }), words[first + 4] = at + 72;
-        if (transform) words[first + 5] = writeTransform(memory, at + 232, transform);
-        if (mesh) giveHandle(memory, mesh, 'mesh', at + 32), words[first + 6] = 1;
-        if (node) giveHandle(memory, node, 'node', at + 40), words[first + 7] = 1;
-        words.set([layersOf(layers), layersOf(collidesWith), occludes ? 1 : 0, onlyOccludes ? 1 : 0, shape ? handleOf(memory, shape, 'Shape') : 0,
+        if (box || sphere) writeBound(memory, parts, { box, sphere }), words[first + 4] = parts;
+        if (transform) words[first + 5] = writeTransform(memory, parts + 160, transform);
+        if (mesh) giveHandle(memory, mesh, 'mesh', at + 32, item), words[first + 6] = 1;
+        if (node) giveHandle(memory, node, 'node', at + 40, item), words[first + 7] = 1;
+        words.set([layersOf(layers), layersOf(collidesWith), occludes ? 1 : 0, onlyOccludes ? 1 : 0, shape ? handleOf(memory, shape, 'Shape', item) : 0,
             hidden ? 1 : 0], first + 12);
-        memory.call('world_add', this.handle, at, at + 328);
-        return handleAt(memory, at + 328, 'object');
     }
     remove(object) { this.#on('remove', object, 'object'); }
     setHidden(object, hidden) {
@@ -171,6 +201,30 @@ export class World extends Owned {
         memory.call('world_set', this.handle, at + 232, member, at);
     }
     setTransform(object, transform) { this.#move('set_transforms', object, 'object', transform); }
+    /** Many in a call: sixteen numbers by columns each. Moves all but those that are refused; the error's item is the place of the first. */
+    setTransforms(objects, transforms) { this.#moveMany('set_transforms', objects, 'object', transforms); }
+    setNodeTransforms(nodes, transforms) { this.#moveMany('set_node_transforms', nodes, 'node', transforms); }
+    /** `boxes`: a Boxes with a box for each. The rest as for `setTransforms`. */
+    setBoxes(objects, boxes) {
+        const { memory, handle } = this, first = handleOf(memory, boxes, 'Boxes');
+        if (boxes.length !== checkRecords(objects, 'objects').length) throw failure(1, `there are ${objects.length} objects and ${boxes.length} boxes`);
+        memory.lend([new Uint8Array(8 * objects.length)], (at) => {
+            objects.forEach((object, i) => giveHandle(memory, object, 'object', at + 8 * i, i));
+            memory.call('world_set_boxes', handle, at, 0, first, 0, objects.length);
+        });
+    }
+    #moveMany(name, handles, kind, transforms) {
+        const { memory, handle } = this, count = checkRecords(handles, `${kind}s`).length;
+        checkArray(transforms, [Float64Array, Float32Array], 'transforms');
+        if (transforms.length !== 16 * count) throw failure(1, `${count} transforms have 16 numbers each, and there are ${transforms.length}`);
+        memory.lend([new Uint8Array(8 * count), new Uint8Array(96 * count)], (at, poses) => {
+            handles.forEach((one, i) => {
+                giveHandle(memory, one, kind, at + 8 * i, i);
+                writeTransform(memory, poses + 96 * i, transforms.subarray(16 * i, 16 * i + 16));
+            });
+            memory.call(`world_${name}`, handle, at, 0, poses, 0, count);
+        });
+    }
     #move(name, what, kind, transform) {
         const { memory } = this, at = memory.scratch(112);
         writeTransform(memory, at, transform);
@@ -181,20 +235,38 @@ export class World extends Owned {
         memory.call(`world_${name}`, this.handle, giveHandle(memory, what, kind, memory.scratch(16)));
     }
     contains(object) {
-        const { memory } = this, at = memory.scratch(208);
-        giveHandle(memory, object, 'object', at);
-        memory.words[at + 8 >> 2] = 192;
         try {
-            memory.call('world_get_object', this.handle, at, at + 8);
+            this.#info(object);
             return true;
         } catch (error) {
             if (error.status === 'stale handle') return false;
             throw error;
         }
     }
-    /** As of the last update: `{ objects, resting, moving, boxesChanged, outOfRange }`. */
+    // The place of an object's data, 192 bytes: user 8, has box 16, has transform 20, box 24, transform 96.
+    #info(object) {
+        const { memory } = this, at = giveHandle(memory, object, 'object', memory.scratch(208));
+        memory.words[at + 8 >> 2] = 192;
+        memory.call('world_get_object', this.handle, at, at + 8);
+        return at + 8;
+    }
+    userOf(object) { return userAt(this.memory, this.#info(object) + 8); }
+    /** `{ center, axes, halfExtents }` as of the last update. Error: there was none since the object was added. */
+    boxOf(object) {
+        const at = this.#info(object), { words, floats } = this.memory;
+        if (!words[at + 16 >> 2]) throw failure(5, 'the object has no box before the next update', object.index);
+        return { center: vectorAt(this.memory, at + 24), axes: [...floats.subarray(at + 48 >> 2, at + 84 >> 2)],
+            halfExtents: [...floats.subarray(at + 84 >> 2, at + 96 >> 2)] };
+    }
+    /** Sixteen numbers by columns, to the world. Error: the object is a bound, or there was no update since it was added. */
+    transformOf(object) {
+        const at = this.#info(object), { words, doubles } = this.memory;
+        if (!words[at + 20 >> 2]) throw failure(5, 'the object is a bound, or there was no update since it was added', object.index);
+        return [0, 1, 2, 3].flatMap((c) => [...doubles.subarray((at + 96 >> 3) + 3 * c, (at + 96 >> 3) + 3 * c + 3), c === 3 ? 1 : 0]);
+    }
+    /** As of the last update: `{ objects, resting, moving, boxesChanged, outOfRange, occludersWaiting }`. */
     get statistics() {
-        const words = this.#statistics(), names = { objects: 2, resting: 4, moving: 6, boxesChanged: 12, outOfRange: 14 };
+        const words = this.#statistics(), names = { objects: 2, resting: 4, moving: 6, boxesChanged: 12, outOfRange: 14, occludersWaiting: 18 };
         return Object.fromEntries(Object.entries(names).map(([name, place]) => [name, words[place]]));
     }
     get count() { return this.#statistics()[16]; }
@@ -257,7 +329,7 @@ export class World extends Owned {
     #hitAt(at) {
         const { memory } = this, { doubles, words } = memory, first = at >> 2;
         return { ...refAt(memory, at), t: doubles[at + 16 >> 3], point: vectorAt(memory, at + 24),
-            triangle: words[first + 12] === ALL ? -1 : words[first + 12], child: words[first + 13],
+            ...placeAt(memory, at + 48, at + 52),
             normal: vectorAt(memory, at + 56), startedInside: (words[first + 20] & 255) !== 0 };
     }
     /** Returns the nearest hit of a ray, `{ object, user, t, point, triangle, child, normal, startedInside }`, or null. */
@@ -331,29 +403,58 @@ export class World extends Owned {
     }
     /** Returns the object nearest to a shape, `{ object, user, distance, onShape, onObject }`, no farther than `maxDistance`; or null. */
     closest(shape, maxDistance = Infinity, filter = ALL) {
-        const { memory } = this, at = memory.scratch(336), answer = at + 256;
+        const { memory } = this, at = memory.scratch(344), answer = at + 256;
         withFilter(memory, filter, (given) => {
-            memory.words[answer >> 2] = 80;
+            memory.words[answer >> 2] = 88;
             memory.call('world_closest', this.handle, this.#writeShape(at, shape), maxDistance, given, answer);
         });
         if (memory.words[answer + 4 >> 2] === ALL) return null;
         return { object: handleAt(memory, answer + 4, 'object'), user: userAt(memory, answer + 16), distance: memory.doubles[answer + 24 >> 3],
-            onShape: vectorAt(memory, answer + 32), onObject: vectorAt(memory, answer + 56) };
+            onShape: vectorAt(memory, answer + 32), onObject: vectorAt(memory, answer + 56), ...placeAt(memory, answer + 80, answer + 84) };
     }
     /**
      * Returns the first object that a shape meets which moves by `velocity` and turns by `spin` radians a unit of time about its `pivot`:
-     * `{ object, user, time, normal, point, triangle, distance, unresolved }`, or null. The objects are at rest.
+     * `{ object, user, time, normal, point, triangle, child, distance, unresolved }`, or null; -1 where there is no triangle. The objects are at rest.
      */
     cast({ shape, transform } = {}, how, filter = ALL) {
-        const { memory } = this, at = memory.scratch(304), motion = at + 104, options = at + 176, hit = at + 208;
+        const { memory } = this, at = memory.scratch(312), motion = at + 104, options = at + 176, hit = at + 208;
         writeCast(memory, how, motion, options);
-        memory.words[hit >> 2] = 96;
+        memory.words[hit >> 2] = 104;
         withFilter(memory, filter, (given) =>
             memory.call('world_cast', this.handle, writePlaced(memory, at, shape, transform), motion, options, given, hit));
-        if (memory.words[hit + 4 >> 2] === ALL) return null;
-        return { object: handleAt(memory, hit + 4, 'object'), user: userAt(memory, hit + 16), time: memory.doubles[hit + 24 >> 3],
-            normal: vectorAt(memory, hit + 32), point: vectorAt(memory, hit + 56), triangle: memory.words[hit + 80 >> 2],
-            unresolved: memory.words[hit + 84 >> 2] === 2, distance: memory.doubles[hit + 88 >> 3] };
+        return memory.words[hit + 4 >> 2] === ALL ? null : this.#shapeHitAt(hit);
+    }
+    /** Returns what `cast` does, of each object that the shape meets, in order of time, then of index. */
+    castAll({ shape, transform } = {}, how, filter = ALL) {
+        const { memory } = this;
+        return this.#find('shape_hits', 104, (found, at) => {
+            const motion = at + 104, options = at + 176;
+            writeCast(memory, how, motion, options);
+            withFilter(memory, filter, (given) =>
+                memory.call('world_cast_all', this.handle, writePlaced(memory, at, shape, transform), motion, options, given, found));
+        }, (at) => this.#shapeHitAt(at));
+    }
+    /**
+     * Returns where a shape, which need not be an object, touches the objects, up to a margin: `{ object, user, normal, depth, points }`, in order of
+     * index. The normal leads from the shape to the object; points are those of `Shape.contacts`.
+     */
+    contactManifolds({ shape, transform } = {}, { margin = 0, maxPoints = 4 } = {}, filter = ALL) {
+        const { memory } = this;
+        return this.#find('manifolds', 504, (found, at) => {
+            const options = at + 104;
+            memory.words[options >> 2] = 24;
+            memory.doubles[options + 8 >> 3] = margin;
+            memory.words[options + 16 >> 2] = maxPoints;
+            withFilter(memory, filter, (given) =>
+                memory.call('world_manifolds', this.handle, writePlaced(memory, at, shape, transform), options, given, found));
+        }, (at) => ({ object: handleAt(memory, at, 'object'), user: userAt(memory, at + 8), normal: vectorAt(memory, at + 16),
+            depth: memory.doubles[at + 40 >> 3], points: pointsAt(memory, at + 56, memory.words[at + 48 >> 2]) }));
+    }
+    #shapeHitAt(at) {
+        const { memory } = this;
+        return { object: handleAt(memory, at + 4, 'object'), user: userAt(memory, at + 16), time: memory.doubles[at + 24 >> 3],
+            normal: vectorAt(memory, at + 32), point: vectorAt(memory, at + 56), ...placeAt(memory, at + 80, at + 96),
+            unresolved: memory.words[at + 84 >> 2] === 2, distance: memory.doubles[at + 88 >> 3] };
     }
     // A probe, in 248 bytes.
     #writeShape(at, { box, sphere, capsule, shape, transform } = {}) {

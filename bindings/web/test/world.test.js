@@ -24,6 +24,111 @@ for (const build of BUILDS) {
         return { world, objects };
     };
 
+    here('a shape that is no object is cast through all, and touches them', () => {
+        const { world, objects } = row(), shape = new crofton.Shape({ capsule: { radius: 0.25, halfHeight: 1 } }), placed = (x) => ({ shape, transform: at(x, 0, -5) });
+        const hits = world.castAll(placed(4), { velocity: [-1, 0, 0], duration: 9 });
+        assert.deepEqual(hits.map((hit) => hit.object), [objects[2], objects[1], objects[0]]);
+        hits.forEach((hit, i) => near(hit.time, 1.5 + i, 1e-5));
+        assert.deepEqual([hits[0].triangle, hits[0].child, hits[0].unresolved], [-1, 0, false]);
+        assert.deepEqual(hits[0], world.cast(placed(4), { velocity: [-1, 0, 0], duration: 9 }));
+        assert.equal(world.castAll(placed(4), { velocity: [-1, 0, 0], duration: 9 }, { ignored: [objects[1]] }).length, 2);
+        const [touch, ...others] = world.contactManifolds(placed(2.3));
+        assert.deepEqual([touch.object, touch.user, others.length, touch.points.length], [objects[2], 2, 0, 1]);
+        near(touch.depth, 0.2), near(touch.normal[0], -1), near(touch.points[0].position[0], 2.15), near(touch.points[0].depth, 0.2);
+        assert.equal(world.contactManifolds(placed(1.5), { margin: 0.5 }).length, 2);
+        assert.deepEqual(world.contactManifolds(placed(9)), []);
+        assert.equal(world.closest({ sphere: { center: [9, 0, -5], radius: 1 } }).triangle, -1);
+        assert.throws(() => world.contactManifolds(placed(0), { maxPoints: 9 }), CroftonError);
+        assert.throws(() => world.contactManifolds(placed(0), { margin: NaN }), CroftonError);
+    });
+    here('many objects are added at once, or none of them', () => {
+        const world = new crofton.World({ updatesToRest: 2, maxPairs: 3 });
+        world.reserve(1000);
+        assert.throws(() => world.reserve(2 ** 31), refused('out of range'));
+        const shape = new crofton.Shape({ sphere: { radius: 1 } }), mesh = world.addMesh(CUBE.positions, CUBE.indices);
+        const many = [...Array.from({ length: 998 }, (_, i) => ({ sphere: { center: [10 * i, 0, 0], radius: 1 }, user: i })),
+            { mesh, transform: at(0, 50, 0), user: 998 }, { shape, transform: at(0, 60, 0), user: 999, layers: 2 }];
+        const objects = world.addMany(many);
+        world.update();
+        assert.equal(world.count, 1000);
+        objects.forEach((object, i) => assert.equal(world.userOf(object), i));
+        assert.deepEqual(world.boxOf(objects[7]).center, [70, 0, 0]);
+        for (const extent of world.boxOf(objects[998]).halfExtents) near(extent, 1, 1e-6);
+        assert.deepEqual(world.transformOf(objects[998]), at(0, 50, 0));
+        assert.throws(() => world.transformOf(objects[0]), refused('empty', objects[0].index));
+        assert.ok(world.raycastAny([0, 60, 9], [0, 0, -1], 99, 2) && !world.raycastAny([0, 60, 9], [0, 0, -1], 99, 1));
+        const bad = [many[0], { sphere: { center: [NaN, 0, 0], radius: 1 } }, many[1]];
+        assert.throws(() => world.addMany(bad), refused('not finite', 1));
+        assert.throws(() => world.addMany([many[0], {}]), refused('invalid argument', 1));
+        assert.throws(() => world.addMany([many[0], 7]), refused('invalid argument', 1));
+        assert.throws(() => world.addMany([many[0], { mesh: 3 }]), refused('bad handle', 1));
+        assert.equal(world.count, 1000);
+        assert.deepEqual(world.addMany([]), []);
+        const added = world.add({ sphere: { center: [0, 0, 0], radius: 1 } });
+        assert.throws(() => world.boxOf(added), refused('empty', added.index));
+        world.addMany(Array.from({ length: 4 }, () => many[0]));
+        assert.throws(() => world.update(), refused('budget exceeded'));
+        world.remove(added);
+        assert.throws(() => world.userOf(added), refused('stale handle'));
+    });
+
+    here('many objects and nodes move in one call', () => {
+        const world = new crofton.World(), mesh = world.addMesh(CUBE.positions, CUBE.indices);
+        const objects = world.addMany([{ mesh }, { mesh }, { mesh }]), nodes = [world.addNode(), world.addNode()];
+        const below = world.add({ mesh, node: nodes[1] });
+        const places = new Float64Array([at(10, 0, 0), at(20, 0, 0), at(30, 0, 0)].flat());
+        world.setTransforms(objects, places);
+        world.setNodeTransforms(nodes, places.subarray(0, 32));
+        world.update();
+        assert.deepEqual(objects.map((object) => world.boxOf(object).center[0]), [10, 20, 30]);
+        assert.deepEqual(world.transformOf(below), at(20, 0, 0));
+        places[0] = NaN, places[12] = 11, places[28] = 21;
+        assert.throws(() => world.setTransforms(objects, places), refused('not finite', 0));
+        world.update();
+        assert.deepEqual(objects.map((object) => world.boxOf(object).center[0]), [10, 21, 30]);
+        assert.throws(() => world.setTransforms(objects, places.subarray(16)), refused('invalid argument'));
+        assert.throws(() => world.setTransforms(nodes, places.subarray(16)), refused('bad handle'));
+        const bounds = world.addMany([{ sphere: { center: [0, 0, 0], radius: 1 } }, { sphere: { center: [0, 0, 0], radius: 1 } }]);
+        const boxes = new crofton.Boxes(2);
+        boxes.setAll(new Float64Array([1, 2, 3, 4, 5, 6]), new Float64Array([1, 1, 1, 2, 2, 2]));
+        world.setBoxes(bounds, boxes);
+        world.update();
+        assert.deepEqual(bounds.map((object) => world.boxOf(object).center), [[1, 2, 3], [4, 5, 6]]);
+        assert.throws(() => world.setBoxes(bounds.slice(1), boxes), refused('invalid argument'));
+    });
+
+    here('a region says what it holds, and what a view of it lists', () => {
+        const region = new crofton.Region([{ mesh: 0, transform: at(0, 0, -9) }, { sphere: { center: [5, 0, 0], radius: 1 } }],
+            { meshes: [{ ...CUBE, clusters: true }] });
+        assert.equal(region.count, 2);
+        const { min, max } = region.bounds;
+        assert.ok(min[2] <= -10 && min[2] > -10.1 && max[0] >= 6 && max[0] < 6.1);
+        assert.deepEqual([region.meshOf(0), region.meshOf(1)], [0, -1]);
+        assert.throws(() => region.meshOf(2), refused('out of range', 2));
+        assert.throws(() => region.clustersOf(1), refused('empty', 1));
+        const world = new crofton.World(), attached = world.attach(region), clusters = region.clustersOf(0);
+        world.update();
+        assert.equal(clusters.triangleOrder.length, 12);
+        const visible = world.view({ camera: {}, picture: { width: 320, height: 180 } }, new crofton.ViewResult());
+        const [first] = visible.triangles;
+        assert.equal(first.object, world.objectIn(attached, 0).index);
+        assert.ok(first.cluster < clusters.clusters.length);
+        const permuted = crofton.permuteTriangles(clusters, CUBE.indices);
+        clusters.triangleOrder.forEach((triangle, i) =>
+            assert.deepEqual(permuted.subarray(3 * i, 3 * i + 3), CUBE.indices.subarray(3 * triangle, 3 * triangle + 3)));
+        assert.throws(() => crofton.permuteTriangles(clusters, CUBE.indices.subarray(3)), refused('invalid argument'));
+    });
+
+    here('limits of a camera leave out what is small in the picture', () => {
+        const world = new crofton.World(), visible = new crofton.ViewResult();
+        world.addMany(Array.from({ length: 100 }, (_, i) => ({ sphere: { center: [0, 0, -4 - 4 * i], radius: 1 } })));
+        world.update();
+        // A sphere around an object's box has radius sqrt(3). One pixel of 1000 is d * 2 tan(30 degrees) / 1000 wide at distance d.
+        const limits = crofton.limitsOfCamera({}, 1000, 10), farthest = Math.sqrt(3) * 2 * 1000 / (10 * 2 * Math.tan(Math.PI / 6));
+        assert.equal(world.view({ camera: {}, limits }, visible).length, Array.from({ length: 100 }, (_, i) => 4 + 4 * i).filter((d) => d <= farthest).length);
+        assert.throws(() => crofton.limitsOfCamera({}, 1000, -1), CroftonError);
+    });
+
     here('a node moves what is below it, and takes it along when it is removed', () => {
         const world = new crofton.World(), mesh = world.addMesh(CUBE.positions, CUBE.indices);
         const root = world.addNode({ transform: at(10, 0, 0) }), arm = world.addNode({ parent: root, transform: at(0, 5, 0) });

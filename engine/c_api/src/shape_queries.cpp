@@ -82,8 +82,10 @@ class CallersCache {
     convex::PairCache cache_;
 };
 
-crofton_status to_manifold_options(const crofton_manifold_options* options, const char* function,
-                                   convex::ManifoldOptions& result) {
+}  // namespace
+
+crofton_status capi::to_manifold_options(const crofton_manifold_options* options, const char* function,
+                                         convex::ManifoldOptions& result) {
     if (!options) return CROFTON_OK;
     crofton_manifold_options given{};
     CROFTON_CHECK(read_growing(options, function, given));
@@ -93,8 +95,6 @@ crofton_status to_manifold_options(const crofton_manifold_options* options, cons
     if (given.max_points != 0) result.max_points = static_cast<int>(given.max_points);
     return CROFTON_OK;
 }
-
-}  // namespace
 
 convex::Motion capi::to_motion(const crofton_motion* motion) {
     convex::Motion result;

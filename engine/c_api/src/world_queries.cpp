@@ -15,18 +15,11 @@
 #include <crofton/capi/query_shapes.hpp>
 #include <crofton/capi/shapes.hpp>
 #include "clusters.hpp"
+#include "found.hpp"
 #include "world.hpp"
 
 using namespace crofton;
 using namespace crofton::capi;
-
-// A list of objects or of hits.
-struct crofton_found {
-    static constexpr std::uint32_t kKind = 0x43724f0a;
-    Header header;
-    Vector<ObjectRef> objects{};
-    Vector<ObjectHit> hits{};
-};
 
 static_assert(sizeof(crofton_object_ref) == sizeof(ObjectRef) &&
               offsetof(crofton_object_ref, user) == offsetof(ObjectRef, user));
@@ -187,7 +180,7 @@ crofton_status crofton_world_raycast_all(const crofton_world* world, const croft
     CROFTON_CHECK(check_pointer(ray, __func__));
     Ray checked;
     CROFTON_CHECK(to_ray(*ray, __func__, kNoItem, checked));
-    found->objects.clear();
+    found->clear();
     world->world.raycast_all(checked, found->hits, accepted);
     return CROFTON_OK;
 }
@@ -201,7 +194,7 @@ crofton_status crofton_world_overlap(const crofton_world* world, const crofton_q
     QueryFilter accepted;
     CROFTON_CHECK(to_filter(filter, __func__, accepted));
     return visit_shape(shape, __func__, [&](const auto&... asked) {
-        found->hits.clear();
+        found->clear();
         world->world.overlap(asked..., found->objects, accepted);
         return CROFTON_OK;
     });
@@ -216,13 +209,15 @@ crofton_status crofton_world_closest(const crofton_world* world, const crofton_q
     CROFTON_CHECK(check_growing(closest, __func__));
     CROFTON_CHECK(check_limit(max_distance, "max_distance", __func__));
     return visit_shape(shape, __func__, [&](const auto&... asked) {
-        crofton_closest_object result{0, {CROFTON_NONE, 0}, 0, kNoDistance, {}, {}};
+        crofton_closest_object result{0, {CROFTON_NONE, 0}, 0, kNoDistance, {}, {}, CROFTON_NONE, 0};
         if (const auto nearest = world->world.closest(asked..., max_distance, accepted)) {
             result.object = {nearest->object.index, nearest->object.generation};
             result.user = nearest->user;
             result.distance = nearest->distance;
             std::memcpy(result.on_shape, &nearest->on_shape, sizeof result.on_shape);
             std::memcpy(result.on_object, &nearest->on_object, sizeof result.on_object);
+            result.triangle = nearest->triangle;
+            result.child = nearest->child;
         }
         write_growing(result, closest);
         return CROFTON_OK;

@@ -8,18 +8,14 @@
 
 #include <crofton/capi/convert.hpp>
 #include <crofton/capi/growing.hpp>
+#include <crofton/capi/region.hpp>
+#include "clusters.hpp"
 #include "world.hpp"
 
 using namespace crofton;
 using namespace crofton::capi;
 
 static_assert(CROFTON_FIRST_REGION_INDEX == kFirstRegionIndex);
-
-struct crofton_region {
-    static constexpr std::uint32_t kKind = 0x43724f12;
-    Header header;
-    Region region;
-};
 
 namespace {
 
@@ -115,6 +111,44 @@ crofton_status crofton_region_prepare(const crofton_region_object* objects, size
 
 crofton_status crofton_region_destroy(crofton_region* region) {
     return destroy(region, __func__);
+}
+
+crofton_status crofton_region_get_info(const crofton_region* region, crofton_region_info* info) {
+    const SharedUse use(region, __func__);
+    if (use.failed()) return use.status();
+    CROFTON_CHECK(check_growing(info, __func__));
+    crofton_region_info result{};
+    result.object_count = region->region.object_count();
+    result.bytes = region->region.bytes();
+    const Aabb& bounds = region->region.bounds();
+    for (int k = 0; k < 3; ++k) result.min[k] = bounds.min[k], result.max[k] = bounds.max[k];
+    write_growing(result, info);
+    return CROFTON_OK;
+}
+
+crofton_status crofton_region_mesh_of(const crofton_region* region, uint32_t place, uint32_t* mesh) {
+    const SharedUse use(region, __func__);
+    if (use.failed()) return use.status();
+    CROFTON_CHECK(check_pointer(mesh, __func__));
+    if (place >= region->region.object_count())
+        return report(CROFTON_OUT_OF_RANGE, __func__, "the region has no object at that place", place);
+    *mesh = region->region.mesh_of(place);
+    return CROFTON_OK;
+}
+
+crofton_status crofton_region_clusters_of(const crofton_region* region, uint32_t mesh, crofton_clusters* clusters) {
+    const SharedUse use(region, __func__);
+    if (use.failed()) return use.status();
+    CROFTON_CHECK(check_pointer(clusters, __func__));
+    const depth::ClusteredMesh* const cut = region->region.clusters_of(mesh);
+    if (cut == nullptr)
+        return report(CROFTON_EMPTY, __func__, "the region has no such mesh, or it has no clusters", mesh);
+    return recover(__func__, [&] {
+        const std::lock_guard lock(region->mutex);
+        while (region->cluster_ranges.size() <= mesh) region->cluster_ranges.emplace_back();
+        *clusters = to_c_clusters(*cut, region->cluster_ranges[mesh]);
+        return CROFTON_OK;
+    });
 }
 
 crofton_status crofton_world_attach(crofton_world* world, const crofton_region* region, const double origin[3],

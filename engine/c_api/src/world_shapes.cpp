@@ -1,14 +1,46 @@
 // SPDX-License-Identifier: MIT
-// Casts of shapes in a World.
+// Casts and contacts of shapes that are no objects of a World, for the C API.
 #include <crofton/capi/crofton.h>
 
 #include <limits>
 
 #include <crofton/capi/shapes.hpp>
+#include "found.hpp"
 #include "world.hpp"
 
 using namespace crofton;
 using namespace crofton::capi;
+
+static_assert(sizeof(crofton_object_manifold) == sizeof(ObjectManifold) &&
+              offsetof(crofton_object_manifold, user) == offsetof(ObjectManifold, user) &&
+              offsetof(crofton_object_manifold, normal) ==
+                  offsetof(ObjectManifold, manifold) + offsetof(convex::Manifold, normal) &&
+              offsetof(crofton_object_manifold, depth) ==
+                  offsetof(ObjectManifold, manifold) + offsetof(convex::Manifold, depth) &&
+              offsetof(crofton_object_manifold, point_count) ==
+                  offsetof(ObjectManifold, manifold) + offsetof(convex::Manifold, count) &&
+              offsetof(crofton_object_manifold, points) ==
+                  offsetof(ObjectManifold, manifold) + offsetof(convex::Manifold, points) &&
+              sizeof(crofton_shape_point) == sizeof(convex::ContactPoint));
+
+namespace {
+
+crofton_shape_hit to_c_hit(const ShapeHit& hit) {
+    crofton_shape_hit result{};
+    result.size = sizeof result;
+    result.object = {hit.object.index, hit.object.generation};
+    result.user = hit.user;
+    result.time = hit.time;
+    std::memcpy(result.normal, &hit.normal, sizeof result.normal);
+    std::memcpy(result.point, &hit.point, sizeof result.point);
+    result.triangle = hit.triangle;
+    result.child = hit.child;
+    result.distance = hit.distance;
+    result.result = hit.resolved ? CROFTON_CAST_HIT : CROFTON_CAST_UNRESOLVED;
+    return result;
+}
+
+}  // namespace
 
 crofton_status crofton_world_cast(const crofton_world* world, const crofton_placed* probe, const crofton_motion* motion,
                                   const crofton_cast_options* options, const crofton_query_filter* filter,
@@ -26,18 +58,75 @@ crofton_status crofton_world_cast(const crofton_world* world, const crofton_plac
     if (!found) return report(found.error(), __func__);
     crofton_shape_hit result{};
     result.object.index = CROFTON_NONE;
+    result.triangle = CROFTON_NONE;
     result.time = std::numeric_limits<double>::infinity();
-    if (*found) {
-        const ShapeHit& first = **found;
-        result.object = {first.object.index, first.object.generation};
-        result.user = first.user;
-        result.time = first.time;
-        std::memcpy(result.normal, &first.normal, sizeof result.normal);
-        std::memcpy(result.point, &first.point, sizeof result.point);
-        result.triangle = first.triangle;
-        result.distance = first.distance;
-        result.result = first.resolved ? CROFTON_CAST_HIT : CROFTON_CAST_UNRESOLVED;
-    }
+    if (*found) result = to_c_hit(**found);
     write_growing(result, hit);
+    return CROFTON_OK;
+}
+
+crofton_status crofton_world_cast_all(const crofton_world* world, const crofton_placed* probe,
+                                      const crofton_motion* motion, const crofton_cast_options* options,
+                                      const crofton_query_filter* filter, crofton_found* found) {
+    const SharedUse use_world(world, __func__);
+    if (use_world.failed()) return use_world.status();
+    const ExclusiveUse use(found, __func__);
+    if (use.failed()) return use.status();
+    QueryFilter accepted;
+    CROFTON_CHECK(to_filter(filter, __func__, accepted));
+    const PlacedShape placed(probe, __func__);
+    CROFTON_CHECK(placed.status());
+    convex::CastOptions wanted;
+    CROFTON_CHECK(to_cast_options(options, __func__, wanted));
+    return recover(__func__, [&] {
+        Vector<ShapeHit> hits;
+        const auto done =
+            world->world.cast_all(placed.shape(), placed.pose(), to_motion(motion), wanted, hits, accepted);
+        if (!done) return report(done.error(), __func__);
+        found->clear();
+        for (const ShapeHit& hit : hits) found->shape_hits.push_back(to_c_hit(hit));
+        return CROFTON_OK;
+    });
+}
+
+crofton_status crofton_world_manifolds(const crofton_world* world, const crofton_placed* probe,
+                                       const crofton_manifold_options* options, const crofton_query_filter* filter,
+                                       crofton_found* found) {
+    const SharedUse use_world(world, __func__);
+    if (use_world.failed()) return use_world.status();
+    const ExclusiveUse use(found, __func__);
+    if (use.failed()) return use.status();
+    QueryFilter accepted;
+    CROFTON_CHECK(to_filter(filter, __func__, accepted));
+    const PlacedShape placed(probe, __func__);
+    CROFTON_CHECK(placed.status());
+    convex::ManifoldOptions wanted;
+    CROFTON_CHECK(to_manifold_options(options, __func__, wanted));
+    return recover(__func__, [&] {
+        found->clear();
+        const auto done =
+            world->world.contact_manifolds(placed.shape(), placed.pose(), wanted, found->manifolds, accepted);
+        return done ? CROFTON_OK : report(done.error(), __func__);
+    });
+}
+
+crofton_status crofton_found_shape_hits(const crofton_found* found, const crofton_shape_hit** hits, size_t* count) {
+    const SharedUse use(found, __func__);
+    if (use.failed()) return use.status();
+    CROFTON_CHECK(check_pointer(hits, __func__));
+    CROFTON_CHECK(check_pointer(count, __func__));
+    *hits = found->shape_hits.data();
+    *count = found->shape_hits.size();
+    return CROFTON_OK;
+}
+
+crofton_status crofton_found_manifolds(const crofton_found* found, const crofton_object_manifold** manifolds,
+                                       size_t* count) {
+    const SharedUse use(found, __func__);
+    if (use.failed()) return use.status();
+    CROFTON_CHECK(check_pointer(manifolds, __func__));
+    CROFTON_CHECK(check_pointer(count, __func__));
+    *manifolds = reinterpret_cast<const crofton_object_manifold*>(found->manifolds.data());
+    *count = found->manifolds.size();
     return CROFTON_OK;
 }

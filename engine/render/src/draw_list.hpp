@@ -15,6 +15,7 @@ inline constexpr std::array kAllFaces{Faces::both, Faces::front_by_shader, Faces
 struct MergedDraw {
     std::uint32_t first_index, index_count, transform;
     Faces faces;
+    bool is_copy = false;  // of indices that join_short_draws() has copied
 };
 
 // Appends to `draws` in the order given, which decides between surfaces of equal depth, joining a range to the one
@@ -22,5 +23,10 @@ struct MergedDraw {
 // triangles, or refers beyond indices or transforms.
 [[nodiscard]] Result<void> merge_ranges(std::span<const DrawRange> ranges, std::size_t index_count,
                                         std::size_t transform_count, Vector<MergedDraw>& draws);
+
+// Replaces short draws in a row that share transform and faces by one draw of at most `most_indices`, whose indices are
+// copied to `copies`. Triangles keep their order.
+void join_short_draws(std::span<const std::uint32_t> indices, std::uint32_t most_indices, Vector<MergedDraw>& draws,
+                      Vector<std::uint32_t>& copies);
 
 }  // namespace crofton::render

@@ -29,7 +29,7 @@ void Rasterizer::State::record_numbers(const Target& target) {
     if (stamps != VK_NULL_HANDLE) context.vk.vkCmdResetQueryPool(commands.handle, stamps, 0, stamp_count);
     next_stamp = 0;
     const LabelledCommands label(context.labels, commands.handle, "triangles in numbers");
-    begin_pass(target, {});
+    begin_pass(pipelines.render_pass, target, {});
     if (!draws.empty()) bind_geometry();
     record_counted_draws(pipelines.owners);
     context.vk.vkCmdEndRenderPass(commands.handle);

@@ -72,12 +72,16 @@ Pipelines::~Pipelines() {
     for (VkPipeline pipeline : {wires, lines, sky}) vk.vkDestroyPipeline(context.device, pipeline, nullptr);
     vk.vkDestroyPipelineLayout(context.device, layout, nullptr);
     vk.vkDestroyRenderPass(context.device, render_pass, nullptr);
+    vk.vkDestroyRenderPass(context.device, covered_pass, nullptr);
 }
 
 Result<void> Pipelines::create() {
     auto pass = create_render_pass(context, {.depth_format = kDepthFormat});
     if (!pass) return std::move(pass.error());
     render_pass = *pass;
+    auto covered = create_render_pass(context, {VK_ATTACHMENT_LOAD_OP_DONT_CARE, kDepthFormat});
+    if (!covered) return std::move(covered.error());
+    covered_pass = *covered;
     if (auto made = create_layout(*this); !made) return made;
 
     const auto make = [&](const PipelineDescription& description, VkPipeline& pipeline) -> Result<void> {
@@ -129,6 +133,7 @@ void Pipelines::name() const {
         labels.name(context.device, VK_OBJECT_TYPE_PIPELINE, pipeline, text);
     };
     labels.name(context.device, VK_OBJECT_TYPE_RENDER_PASS, render_pass, "picture");
+    labels.name(context.device, VK_OBJECT_TYPE_RENDER_PASS, covered_pass, "picture with a sky");
     labels.name(context.device, VK_OBJECT_TYPE_PIPELINE_LAYOUT, layout, "all pipelines");
     name_pipeline(triangles[static_cast<std::size_t>(Faces::both)], "triangles, both faces");
     name_pipeline(triangles[static_cast<std::size_t>(Faces::front_by_shader)], "triangles, front faces by the shader");

@@ -24,6 +24,7 @@ struct Pipelines {
     const VulkanContext& context;
     // Colour ends in SHADER_READ_ONLY_OPTIMAL, visible to transfers and fragment shaders that follow.
     VkRenderPass render_pass = VK_NULL_HANDLE;
+    VkRenderPass covered_pass = VK_NULL_HANDLE;  // compatible; for pictures with a sky, which need no clear colour
     VkPipelineLayout layout = VK_NULL_HANDLE;
     std::array<VkPipeline, kAllFaces.size()> triangles{};  // by Faces
     std::array<VkPipeline, kAllFaces.size()> owners{};     // the same, in numbers; null where the device cannot

@@ -30,6 +30,19 @@ void set_tint(DrawTransform& transform, const glm::vec3& linear_rgb, float share
     transform.tint_share = share;
 }
 
+namespace {
+
+// A software device's memory is the host's: join_draws() reads it.
+Result<Buffer> create_index_buffer(const VulkanContext& context, std::span<const std::uint32_t> indices) {
+    if (context.properties.deviceType != VK_PHYSICAL_DEVICE_TYPE_CPU)
+        return create_static_buffer(context, indices.data(), indices.size_bytes(), VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
+    auto buffer = create_host_buffer(context, indices.size_bytes(), VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
+    if (buffer) std::memcpy(buffer->mapped, indices.data(), indices.size_bytes());
+    return buffer;
+}
+
+}  // namespace
+
 Rasterizer::State::~State() {
     context.vk.vkDeviceWaitIdle(context.device);
     context.vk.vkDestroyQueryPool(context.device, statistics, nullptr);
@@ -64,6 +77,7 @@ void Rasterizer::State::name_what_grows() const {
     transforms.name("transforms");
     indirect.name("draws");
     lines.name("line ends");
+    copied_indices.name("indices of short draws");
 }
 
 Result<void> Rasterizer::State::create_queries() {
@@ -89,9 +103,23 @@ Result<void> Rasterizer::State::create_queries() {
     return {};
 }
 
+// Software devices pay for each draw, and their indices can be read here.
+Result<void> Rasterizer::State::join_draws() {
+    if (indices.mapped == nullptr || context.max_multi_draws == 0) return {};
+    const std::span<const std::uint32_t> all(reinterpret_cast<const std::uint32_t*>(indices.mapped), index_count);
+    join_short_draws(all, 3 * kPortionTriangles, draws, copies);
+    if (copies.empty()) return {};
+    const std::size_t bytes = copies.size() * sizeof copies[0];
+    if (auto made = reserve_host_buffer(context, copied_indices, bytes, VK_BUFFER_USAGE_INDEX_BUFFER_BIT); !made)
+        return made;
+    std::memcpy(copied_indices.mapped, copies.data(), bytes);
+    return {};
+}
+
 Result<void> Rasterizer::State::prepare(const Frame& frame) {
     draws.clear();
     if (auto merged = merge_ranges(frame.ranges, index_count, frame.transforms.size(), draws); !merged) return merged;
+    if (auto joined = join_draws(); !joined) return joined;
     counted_draws = draws.size();
     if (auto merged = merge_ranges(frame.wire_ranges, index_count, frame.transforms.size(), draws); !merged)
         return merged;
@@ -169,8 +197,7 @@ Result<void> Rasterizer::set_geometry(std::span<const Vertex> vertices, std::spa
             create_static_buffer(context, packed_vertices.data(), packed_vertices.size() * sizeof(PackedVertex),
                                  VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
         if (!made_vertices) return std::move(made_vertices.error());
-        auto made_indices =
-            create_static_buffer(context, indices.data(), indices.size_bytes(), VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
+        auto made_indices = create_index_buffer(context, indices);
         if (!made_indices) return std::move(made_indices.error());
         new_vertices = std::move(*made_vertices);
         new_indices = std::move(*made_indices);

@@ -25,10 +25,12 @@ struct Rasterizer::State {
     std::uint32_t index_count = 0;
 
     // Written anew each frame; they grow, never shrink.
-    Buffer transforms, indirect, lines;
+    Buffer transforms, indirect, lines, copied_indices;
     Vector<MergedDraw> draws;       // the counted ones, then the wires
     std::size_t counted_draws = 0;  // of `draws`
     Vector<VkMultiDrawIndexedInfoEXT> multi_draws;
+    Vector<std::uint32_t> copies;
+    bool binds_copies = false;  // copied_indices are bound, not indices
     // The ranges that draw_owners() draws, each with a transform of its own, which carries its number.
     Vector<DrawRange> numbered_ranges;
     Vector<DrawTransform> numbered_transforms;
@@ -48,14 +50,16 @@ struct Rasterizer::State {
     [[nodiscard]] Result<void> create_queries();
     void name_what_stays() const;  // for debuggers: once
     void name_what_grows() const;  // each frame
-    // Fills draws, transforms, indirect and lines.
+    // Fills draws, transforms, indirect, lines and copied_indices.
     [[nodiscard]] Result<void> prepare(const Frame& frame);
+    [[nodiscard]] Result<void> join_draws();
     [[nodiscard]] Result<void> number_triangles(const Frame& frame);
     void record(const Frame& frame, const Target& target);
     // Without what is not counted; each triangle in its number (owners.cpp).
     void record_numbers(const Target& target);
-    void begin_pass(const Target& target, const VkClearColorValue& background);
+    void begin_pass(VkRenderPass render_pass, const Target& target, const VkClearColorValue& background);
     void bind_geometry();
+    void bind_indices(bool copied);
     void record_draws(std::size_t begin, std::size_t end);
     // `by_faces`: the pipelines.
     void record_counted_draws(const std::array<VkPipeline, kAllFaces.size()>& by_faces);

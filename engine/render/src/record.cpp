@@ -70,11 +70,12 @@ void Rasterizer::State::record_draws(std::size_t begin, std::size_t end) {
     if (context.max_multi_draws > 0) {
         // The instance is the transform, so each call takes a run of draws that share one.
         for (std::size_t i = begin; i < end;) {
+            if (draws[i].is_copy != binds_copies) bind_indices(draws[i].is_copy);
             std::size_t run = i;
             std::uint64_t run_indices = 0;
             do run_indices += draws[run++].index_count;
-            while (run < end && draws[run].transform == draws[i].transform && run - i < context.max_multi_draws &&
-                   run_indices < 3 * kPortionTriangles);
+            while (run < end && draws[run].transform == draws[i].transform && draws[run].is_copy == binds_copies &&
+                   run - i < context.max_multi_draws && run_indices < 3 * kPortionTriangles);
             vk.vkCmdDrawMultiIndexedEXT(commands.handle, static_cast<std::uint32_t>(run - i), multi_draws.data() + i, 1,
                                         draws[i].transform, sizeof(VkMultiDrawIndexedInfoEXT), nullptr);
             end_portion_after(run_indices);
@@ -105,14 +106,15 @@ void Rasterizer::State::record_counted_draws(const std::array<VkPipeline, kAllFa
     }
 }
 
-void Rasterizer::State::begin_pass(const Target& target, const VkClearColorValue& background) {
+void Rasterizer::State::begin_pass(VkRenderPass render_pass, const Target& target,
+                                   const VkClearColorValue& background) {
     const auto& vk = context.vk;
     const VkCommandBuffer cmd = commands.handle;
     std::array<VkClearValue, 2> clear{};
     clear[0].color = background;
     clear[1].depthStencil = {0.0f, 0};
     VkRenderPassBeginInfo pass{VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO};
-    pass.renderPass = pipelines.render_pass;
+    pass.renderPass = render_pass;
     pass.framebuffer = target.framebuffer;
     pass.renderArea.extent = target.drawn_extent;
     pass.clearValueCount = static_cast<std::uint32_t>(clear.size());
@@ -131,7 +133,13 @@ void Rasterizer::State::bind_geometry() {
     const std::array buffers{vertices.handle, transforms.handle};
     const std::array<VkDeviceSize, 2> offsets{};
     context.vk.vkCmdBindVertexBuffers(commands.handle, 0, 2, buffers.data(), offsets.data());
-    context.vk.vkCmdBindIndexBuffer(commands.handle, indices.handle, 0, VK_INDEX_TYPE_UINT32);
+    bind_indices(false);
+}
+
+void Rasterizer::State::bind_indices(bool copied) {
+    binds_copies = copied;
+    context.vk.vkCmdBindIndexBuffer(commands.handle, copied ? copied_indices.handle : indices.handle, 0,
+                                    VK_INDEX_TYPE_UINT32);
 }
 
 void Rasterizer::State::record(const Frame& frame, const Target& target) {
@@ -144,7 +152,8 @@ void Rasterizer::State::record(const Frame& frame, const Target& target) {
 
     const LabelledCommands whole(context.labels, cmd, "picture");
     const glm::vec3 background = glm::sqrt(frame.environment.horizon);
-    begin_pass(target, {{background.r, background.g, background.b, 1.0f}});
+    begin_pass(frame.environment.sky ? pipelines.covered_pass : pipelines.render_pass, target,
+               {{background.r, background.g, background.b, 1.0f}});
     const VkPipelineLayout layout = pipelines.layout;
     constexpr VkShaderStageFlags kStages = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
 

@@ -66,7 +66,7 @@ void DrawList::select(std::span<const scene::InstanceId> visible, const Camera& 
     place(camera);
     for (std::size_t i = 0; i < selected_.size(); ++i) {
         const Part& part = parts_[drawables_->mesh_of(selected_[i].instance)];
-        add_range(i, part.first_index, part.index_count, part.bounds);
+        add_range(i, part.first_index, part.index_count, is_unclipped(i, part.bounds));
     }
 }
 
@@ -83,13 +83,14 @@ void DrawList::select(std::span<const depth::VisibleCluster> visible, const Came
         const scene::MeshId mesh = drawables_->mesh_of(selected_[i].instance);
         for (std::size_t k = selected_[i].begin; k < selected_[i].end; ++k) {
             const depth::Cluster& cluster = clusters_->meshes[mesh]->clusters()[visible[k].cluster];
-            const Aabb bounds = bounds_of(clusters_->meshes[mesh]->box_of(visible[k].cluster));
+            const bool unclipped = is_unclipped(i, bounds_of(clusters_->meshes[mesh]->box_of(visible[k].cluster)));
             // Runs of triangles.
             std::uint64_t left = visible[k].triangles;
             for (std::uint32_t at = 0; left != 0;) {
                 const auto skipped = static_cast<std::uint32_t>(std::countr_zero(left));
                 const auto count = static_cast<std::uint32_t>(std::countr_one(left >> skipped));
-                add_range(i, parts_[mesh].first_index + 3 * (cluster.first_triangle + at + skipped), 3 * count, bounds);
+                add_range(i, parts_[mesh].first_index + 3 * (cluster.first_triangle + at + skipped), 3 * count,
+                          unclipped);
                 piece_of_range_.push_back(k);
                 at += skipped + count;
                 left = skipped + count < 64 ? left >> (skipped + count) : 0;
@@ -131,10 +132,13 @@ void DrawList::place(const Camera& camera) {
     }
 }
 
-void DrawList::add_range(std::size_t selected, std::uint32_t first_index, std::uint32_t index_count,
-                         const Aabb& bounds) {
-    ranges_.push_back({first_index, index_count, static_cast<std::uint32_t>(selected), selected_[selected].one_sided,
-                       render::inside_clip_planes(bounds, transforms_[selected].to_clip)});
+bool DrawList::is_unclipped(std::size_t selected, const Aabb& bounds) const {
+    return render::inside_clip_planes(bounds, transforms_[selected].to_clip);
+}
+
+void DrawList::add_range(std::size_t selected, std::uint32_t first_index, std::uint32_t index_count, bool unclipped) {
+    ranges_.push_back(
+        {first_index, index_count, static_cast<std::uint32_t>(selected), selected_[selected].one_sided, unclipped});
 }
 
 std::uint64_t DrawList::predict_clipped() {

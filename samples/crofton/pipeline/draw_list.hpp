@@ -69,7 +69,8 @@ class DrawList {
     void append(scene::MeshId mesh, bool flat);
     // Puts what selected_ holds in order, and makes its transforms.
     void place(const Camera& camera);
-    void add_range(std::size_t selected, std::uint32_t first_index, std::uint32_t index_count, const Aabb& bounds);
+    [[nodiscard]] bool is_unclipped(std::size_t selected, const Aabb& bounds) const;
+    void add_range(std::size_t selected, std::uint32_t first_index, std::uint32_t index_count, bool unclipped);
 
     std::shared_ptr<const Drawables> drawables_;
     std::shared_ptr<const SceneClusters> clusters_;

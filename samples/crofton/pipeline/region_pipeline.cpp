@@ -44,13 +44,14 @@ class RegionDrawables final : public Drawables {
     }
     [[nodiscard]] scene::InstanceId first_of(std::uint32_t place) const { return firsts_[place]; }
 
-    // Takes over which regions are attached. Numbers their meshes, and frees those that no region in memory has any
-    // more, whose numbers later ones get. Returns whether there are new ones.
-    bool follow(std::span<const RegionStream::Attached> attached) {
+    // Takes over which regions are attached. Numbers their meshes, and moves some of those that no region in memory has
+    // any more to `unused`; later ones get their numbers. Returns whether there are new ones.
+    bool follow(std::span<const RegionStream::Attached> attached,
+                std::vector<std::shared_ptr<const RegionDrawMesh>>& unused) {
         std::vector<const StreamedRegion*> before(regions_.size(), nullptr);
         before.swap(regions_);
         for (const RegionStream::Attached& entry : attached) regions_[entry.place] = entry.region;
-        free_unused();
+        take_unused(unused);
         bool any = false;
         for (const RegionStream::Attached& entry : attached) {
             if (before[entry.place] == entry.region) continue;
@@ -77,12 +78,15 @@ class RegionDrawables final : public Drawables {
         meshes_[id] = mesh;
         return id;
     }
-    void free_unused() {
-        for (scene::MeshId id = 0; id < meshes_.size(); ++id) {
-            if (meshes_[id].use_count() != 1) continue;
-            number_.erase(meshes_[id].get());
-            meshes_[id] = none_;
-            free_.push_back(id);
+    // Looks at some of the meshes, so that no frame takes long where a whole town is left at once.
+    void take_unused(std::vector<std::shared_ptr<const RegionDrawMesh>>& unused) {
+        constexpr std::size_t kAtOnce = 128;
+        for (std::size_t i = 0; i < std::min(kAtOnce, meshes_.size()); ++i) {
+            next_ = (next_ + 1) % meshes_.size();
+            if (meshes_[next_].use_count() != 1) continue;
+            number_.erase(meshes_[next_].get());
+            unused.push_back(std::exchange(meshes_[next_], none_));
+            free_.push_back(static_cast<scene::MeshId>(next_));
         }
     }
 
@@ -91,6 +95,7 @@ class RegionDrawables final : public Drawables {
     std::vector<const StreamedRegion*> regions_;   // by region; nullptr: not attached
     std::vector<std::vector<scene::MeshId>> ids_;  // by region, by its mesh
     std::vector<std::shared_ptr<const RegionDrawMesh>> meshes_;
+    std::size_t next_ = 0;             // of `meshes_`, that take_unused() has looked at last
     std::vector<scene::MeshId> free_;  // of `meshes_`, which have `none_`
     std::shared_ptr<const RegionDrawMesh> none_ = std::make_shared<RegionDrawMesh>();
     std::unordered_map<const RegionDrawMesh*, scene::MeshId> number_;
@@ -125,7 +130,10 @@ struct RegionPipeline::State {
     void follow_meshes() {
         in_order.assign(stream.attached().begin(), stream.attached().end());
         std::sort(in_order.begin(), in_order.end(), [](const auto& a, const auto& b) { return a.place < b.place; });
-        if (!drawables->follow(in_order)) return;
+        auto unused = std::make_unique<StreamedRegion>();
+        const bool any = drawables->follow(in_order, unused->meshes);
+        if (!unused->meshes.empty()) stream.drop(std::move(unused));
+        if (!any) return;
         ++mesh_revision;
         const auto flags = [&](bool bake::MeshLook::*look) {
             std::vector<std::uint8_t> result;

@@ -312,6 +312,12 @@ Result<StreamedFrame> RegionStream::follow(const glm::dvec3& eye) {
     return frame;
 }
 
+void RegionStream::drop(std::unique_ptr<StreamedRegion> region) {
+    const std::lock_guard lock(state_->mutex);
+    state_->dropped.push_back(std::move(region));
+    state_->wanted.notify_one();
+}
+
 const World& RegionStream::world() const {
     return state_->world;
 }

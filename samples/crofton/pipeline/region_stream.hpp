@@ -62,6 +62,9 @@ class RegionStream {
     // times the distance. Errors: a region's file that is missing, damaged or another.
     [[nodiscard]] Result<StreamedFrame> follow(const glm::dvec3& eye);
 
+    // A thread that loads frees it, so that no frame does.
+    void drop(std::unique_ptr<StreamedRegion> region);
+
     [[nodiscard]] const World& world() const;
     [[nodiscard]] double distance() const;
     [[nodiscard]] std::span<const bake::RegionFile> index() const;

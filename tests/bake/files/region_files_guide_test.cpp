@@ -3,6 +3,8 @@
 #include <doctest/doctest.h>
 #include <algorithm>
 #include <atomic>
+#include <chrono>
+#include <counting_memory.hpp>
 #include <crofton/bake/container.hpp>
 #include <crofton/bake/region_files.hpp>
 #include <crofton/crofton.hpp>
@@ -328,6 +330,91 @@ TEST_SUITE("bake/region_files") {
             asks.join();
             CHECK(wrong == 0);
             for (const RegionFile& file : index) CHECK(!open_region(copy.path(), file, {}, {.access = access}));
+        }
+    }
+
+    TEST_CASE("a file that another program cuts, changes and replaces meanwhile is read as it was, or is an error") {
+        const Town town(40);
+        const TemporaryFolder folder;
+        write_regions(town, SceneRegions::split(town.scene, 1, 1).value(), folder.path());
+        const RegionFile file = open_region_index(folder.path()).value().front();
+        const std::string path = folder.path() + "/" + file.name;
+        const MappedFile whole = MappedFile::open(path, {.access = FileAccess::read}).value();
+        const auto box_sum = [](const Region& region) {
+            World world({.pairs = false});
+            world.attach(region, glm::dvec3(0.0)).value();
+            world.update().value();
+            Vector<ObjectRef> found;
+            world.overlap(Sphere{region.bounds().center(), 40.0}, found);
+            double sum = 0.0;
+            for (const ObjectRef& ref : found) sum += world.box_of(ref.object)->center.x * double(ref.user + 1);
+            return sum;
+        };
+        const double expected = box_sum(open_region(folder.path(), file).value());
+        std::atomic<bool> done = false;
+        std::thread writer([&] {
+            const auto* const bytes = reinterpret_cast<const char*>(whole.bytes().data());
+            const auto size = static_cast<std::streamsize>(whole.bytes().size());
+            for (int round = 0; !done; ++round) {
+                if (round % 4 == 0) std::filesystem::resize_file(path, static_cast<std::uintmax_t>(size / 3));
+                if (round % 4 == 1) std::ofstream(path, std::ios::binary).write(bytes, size);
+                if (round % 4 == 2) std::fstream(path, std::ios::binary | std::ios::in | std::ios::out) << "damage";
+                if (round % 4 == 3) (void)write_file(path, whole.bytes());
+                std::this_thread::sleep_for(std::chrono::microseconds(50 * (round % 7)));
+            }
+        });
+        int opened = 0, refused = 0;
+        for (int i = 0; i < 3000 && (opened < 20 || refused < 20); ++i) {
+            const auto region = open_region(folder.path(), file, {}, {.access = FileAccess::read});
+            if (region) {
+                ++opened;
+                CHECK(box_sum(*region) == expected);
+                continue;
+            }
+            ++refused;
+            CHECK((region.error().code == ErrorCode::io || region.error().code == ErrorCode::parse));
+            CHECK(region.error().message.find(path) != std::string::npos);
+        }
+        done = true;
+        writer.join();
+        CHECK(opened > 0);
+        CHECK(refused > 0);
+    }
+
+    TEST_CASE("opening a region stops at whichever question is answered yes, and leaves no memory") {
+        const Town town(400);
+        const TemporaryFolder folder;
+        write_regions(town, SceneRegions::split(town.scene, 1, 1).value(), folder.path());
+        const RegionFile file = open_region_index(folder.path()).value().front();
+        struct Asked {
+            int count = 0, stop_at = 0;
+            double share = 0.0;
+        };
+        const auto open = [&](Asked& asked) {
+            BakedRegionOptions options;
+            options.region.stop_user = &asked;
+            options.region.should_stop = [](void* user, double share) {
+                Asked& its = *static_cast<Asked*>(user);
+                std::this_thread::sleep_for(std::chrono::milliseconds(6));  // it is asked again after 5
+                CHECK(share >= its.share);
+                its.share = share;
+                return ++its.count == its.stop_at;
+            };
+            return open_region(folder.path(), file, options);
+        };
+        Asked all;
+        REQUIRE(open(all));
+        CHECK(all.count > 20);
+        CHECK(all.share <= 1.0);
+        for (int stop_at = 1; stop_at <= all.count; stop_at += 1 + all.count / 12) {
+            testing::CountingMemory memory;
+            {
+                Asked asked{.stop_at = stop_at};
+                const auto region = open(asked);
+                CHECK(error_of(region).code == ErrorCode::cancelled);
+                CHECK(asked.count == stop_at);
+            }
+            CHECK(memory.bytes_in_use() == 0);
         }
     }
 

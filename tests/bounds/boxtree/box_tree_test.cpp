@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
+#include <chrono>
 #include <counting_memory.hpp>
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/boxtree/structure.hpp>
@@ -9,6 +10,8 @@
 #include <oracle/least_cuts.hpp>
 #include <oracle/random_boxes.hpp>
 #include <oracle/tree_contents.hpp>
+#include <thread>
+#include <utility>
 #include <vector>
 
 #include "../../ranges.hpp"
@@ -124,6 +127,60 @@ TEST_SUITE("boxtree/box_tree") {
     // A leaf of 16 items is 512 bytes, 64 are the items' ids, 11 its marks, count and radii; an item has 4 bytes for
     // its slot and 4 for its layers; a sixteenth of a node, of its range and of its radii come with each leaf. Leaves
     // are 97 % full at least.
+    TEST_CASE("a build and a check are asked whether to stop every few thousand items, stop then, and keep no memory") {
+        constexpr std::size_t kCount = 100'000;
+        struct Asked {
+            std::size_t count = 0, stop_at = 0;
+            double share = 0.0;
+        };
+        const auto should_stop = [](void* user, double share) {
+            Asked& its = *static_cast<Asked*>(user);
+            std::this_thread::sleep_for(std::chrono::milliseconds(6));  // it is asked again after 5
+            CHECK(share >= its.share);
+            CHECK(share <= 1.0);
+            its.share = share;
+            return ++its.count == its.stop_at;
+        };
+        ThreadPool threads(2);
+        std::vector<Obb> spread = oracle::random_crowd(kCount, 0.0, 11).boxes;
+        std::vector<Obb> crowded(kCount);  // all in one place
+        for (const auto& [boxes, turned] : {std::pair(&spread, false), {&spread, true}, {&crowded, false}})
+            for (Executor* const executor : {&serial_executor(), static_cast<Executor*>(&threads)}) {
+                CAPTURE(turned);
+                const auto build = [&, &boxes = *boxes, turned = turned](Asked& asked) {
+                    return BoxTree::build(
+                        boxes,
+                        {.orientation = turned ? boxtree::Orientation::oriented : boxtree::Orientation::aligned,
+                         .should_stop = should_stop,
+                         .stop_user = &asked},
+                        *executor);
+                };
+                Asked all;
+                const auto tree = build(all);
+                REQUIRE(tree);
+                CHECK(tree->serialise() ==
+                      BoxTree::build(*boxes, {.orientation = tree->structure().orientation()})->serialise());
+                CHECK(all.count >= (executor->concurrency() > 1 ? 6 : kCount / 16384));
+                // Threads are asked as they come: another time some fewer or more.
+                const bool serial = executor->concurrency() == 1;
+                for (const std::size_t stop_at : {std::size_t{1}, all.count / 2, serial ? all.count - 1 : 2}) {
+                    testing::CountingMemory memory;
+                    {
+                        Asked asked{.stop_at = stop_at};
+                        CHECK(error_of(build(asked)).code == ErrorCode::cancelled);
+                        CHECK(asked.count == stop_at);
+                    }
+                    CHECK(memory.bytes_in_use() == 0);
+                }
+                Asked checked;
+                REQUIRE(tree->validate(should_stop, &checked));
+                CHECK(checked.count >= kCount / 16 / 256);
+                Asked stopped{.stop_at = checked.count / 2};
+                CHECK(error_of(tree->validate(should_stop, &stopped)).code == ErrorCode::cancelled);
+                CHECK(stopped.count == checked.count / 2);
+            }
+    }
+
     TEST_CASE("an item costs at most 64 bytes in addition to its box, after moves too") {
         const testing::CountingMemory memory;
         const oracle::Crowd crowd = oracle::random_crowd(100000, 0.0, 21);

@@ -114,7 +114,7 @@ TEST_SUITE("convex/beside") {
                     push_out_of_union(a, b,
                                       {beside.all(), static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(k),
                                        beside.numbers[0], beside.numbers[1]},
-                                      options, remembered, memory);
+                                      options, remembered, memory, cache);
                     contact_manifolds(a, b, options, alone, &same);
                     contact_manifolds(a, b, beside.all(), options, direct, &same);
                     CHECK(are_same(remembered.all(), direct.all()));

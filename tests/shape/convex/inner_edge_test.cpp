@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <crofton/geometry/closest_points.hpp>
 #include <vector>
 
 #include "surfaces.hpp"
@@ -53,6 +54,11 @@ Verdict rule(const Surface& s, std::size_t touched, const glm::dvec3& n) {
     return rises ? Verdict::into_neighbor : Verdict::belongs;
 }
 
+std::size_t deepest_triangle(const Manifold& m) {
+    const auto is_less_deep = [](const ContactPoint& p, const ContactPoint& q) { return p.depth < q.depth; };
+    return std::max_element(m.points, m.points + m.count, is_less_deep)->part_a.triangle;
+}
+
 }  // namespace
 
 TEST_SUITE("convex/inner_edge") {
@@ -89,15 +95,53 @@ TEST_SUITE("convex/inner_edge") {
                     1.5 * glm::dvec3(random.number(-1, 1), random.number(-0.7, 0.7), random.number(-1, 1))};
                 contact_manifolds({s.shape(), {}}, {body, pose}, {}, found);
                 for (const Manifold& m : found.all()) {
-                    const ContactPoint* deepest = m.points;
-                    for (int k = 1; k < m.count; ++k)
-                        if (m.points[k].depth > deepest->depth) deepest = m.points + k;
-                    const Verdict verdict = rule(s, deepest->part_a.triangle, m.normal);
+                    const Verdict verdict = rule(s, deepest_triangle(m), m.normal);
                     CHECK(verdict != Verdict::into_neighbor);
                     judged += verdict == Verdict::belongs;
                 }
             }
         }
         CHECK(judged > 5000);
+    }
+    TEST_CASE("a ball has a contact for each of many triangles whose touch belongs to the surface, and for no other") {
+        RandomShapes random(4911);
+        int judged = 0, left_out = 0;
+        Manifolds found;
+        for (int round = 0; round < 40; ++round) {
+            const double rough = round % 4 == 0 ? 0.0 : random.number(0.0, 0.2);
+            const Surface s =
+                round % 8 == 7 ? tangle(random, 7, 20)
+                               : ground(random, 10, 0.2, [&](double, double) { return rough * random.number(-1, 1); });
+            for (int i = 0; i < 40; ++i) {
+                const float radius = static_cast<float>(random.number(0.3, 1.0));
+                glm::dvec3 center(random.number(-1, 1), random.number(-0.2, 1.0), random.number(-1, 1));
+                if (i % 4 == 0)  // deep beside a vertex
+                    center = glm::dvec3(s.mesh.positions[static_cast<std::size_t>(random.index(7))]) +
+                             0.3 * random.direction();
+                contact_manifolds({s.shape(Sides::front), {}},
+                                  {Shape::sphere(radius).value(), {glm::dmat3(1.0), center}}, {}, found);
+                for (const Manifold& m : found.all())
+                    CHECK(rule(s, deepest_triangle(m), m.normal) != Verdict::into_neighbor);
+                for (std::size_t t = 0; t < s.size(); ++t) {
+                    const Shape triangle = s.triangle(t);
+                    const std::array<glm::dvec3, 3> corner{triangle.vertex(0), triangle.vertex(1), triangle.vertex(2)};
+                    const glm::dvec3 face = glm::normalize(glm::cross(corner[1] - corner[0], corner[2] - corner[0]));
+                    const glm::dvec3 way = center - closest_on_triangle(center, corner);
+                    const double distance = glm::length(way), depth = static_cast<double>(radius) - distance;
+                    if (depth < 1e-3 || distance < 1e-3 || glm::dot(face, way) < 1e-2 * distance) continue;
+                    const glm::dvec3 n = way / distance;
+                    const Verdict verdict = rule(s, t, n);
+                    left_out += verdict == Verdict::into_neighbor;
+                    if (verdict != Verdict::belongs) continue;
+                    ++judged;
+                    const double cosine = std::cos(0.1);  // points of one manifold differ by 5 degrees at most
+                    CHECK(std::any_of(found.all().begin(), found.all().end(), [&](const Manifold& m) {
+                        return glm::dot(m.normal, n) > cosine && m.depth > depth - 1e-6;
+                    }));
+                }
+            }
+        }
+        CHECK(judged > 2000);
+        CHECK(left_out > 20000);
     }
 }

@@ -109,6 +109,102 @@ TEST_CASE("clusters come back from their bytes as they were, whatever the size o
         }
 }
 
+// Waves run over the mesh; some of its vertices meet, and others part.
+TriangleMesh deformed(const TriangleMesh& mesh, float time) {
+    TriangleMesh result = mesh;
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        glm::vec3& p = result.positions[i];
+        p += glm::vec3(3.0f * std::sin(0.2f * p.z + time), 2.0f * std::sin(0.3f * p.x + time), 0.0f);
+        if (i % 11 == 3) p = result.positions[i - 1];
+    }
+    return result;
+}
+
+TEST_CASE("a mesh that deforms keeps its clusters and their order, and their boxes follow") {
+    oracle::NearMisses random(9);
+    for (const std::uint32_t most : {1u, 7u, 64u}) {
+        const TriangleMesh mesh = hills(30, 50.0f, 5.0f, random);
+        const ClusteredMesh before = ClusteredMesh::cut(mesh.positions, mesh.indices, {.max_triangles = most}).value();
+        ClusteredMesh cut = before;
+        for (int step = 1; step <= 5; ++step) {
+            const TriangleMesh now = deformed(mesh, 0.7f * static_cast<float>(step));
+            if (step == 3) REQUIRE(cut.lend(deformed(mesh, 1.4f).positions, now.indices, depth::IndexOrder::original));
+            const std::uint64_t identity = cut.identity();
+            REQUIRE(cut.refit(now.positions, now.indices));
+            CHECK(cut.identity() != identity);
+            CHECK(std::ranges::equal(cut.triangle_order(), before.triangle_order()));
+            REQUIRE(cut.clusters().size() == before.clusters().size());
+            for (std::size_t c = 0; c < cut.clusters().size(); ++c) {
+                const Cluster x = cut.clusters()[c], y = before.clusters()[c];
+                CHECK(x.first_triangle == y.first_triangle);
+                CHECK(x.triangle_count == y.triangle_count);
+                const ClusterBox box = cut.box_of(c);
+                const glm::dmat3 edges(glm::dvec3(box.half_edges[0]), glm::dvec3(box.half_edges[1]),
+                                       glm::dvec3(box.half_edges[2]));
+                for (std::uint32_t k = x.first_triangle; k < x.first_triangle + x.triangle_count; ++k)
+                    for (std::uint32_t i = 0; i < 3; ++i) {
+                        const glm::vec3& p = now.positions[now.indices[3 * cut.triangle_order()[k] + i]];
+                        const glm::dvec3 at = glm::inverse(edges) * (glm::dvec3(p) - glm::dvec3(box.center));
+                        for (glm::length_t axis = 0; axis < 3; ++axis) CHECK(std::abs(at[axis]) <= 1.0 + 1e-9);
+                    }
+            }
+            // Every corner is where it is told to be.
+            CHECK(ClusteredMesh(cut).lend(now.positions, now.indices, depth::IndexOrder::original));
+        }
+        // Back where it was, it is the mesh that was cut.
+        REQUIRE(cut.refit(mesh.positions, mesh.indices));
+        CHECK(same(cut, before));
+    }
+}
+
+TEST_CASE("of a mesh that has deformed all triangles that own a sample are listed") {
+    oracle::NearMisses random(10);
+    depth::DepthCuller culler;
+    Checked all;
+    for (int step = 0; step < 12; ++step) {
+        Scene scene;
+        const TriangleMesh mesh = hills(20, 50.0f, 5.0f, random);
+        CutMesh& cut = scene.meshes.emplace_back(mesh, 0, false);
+        if (step % 2 == 0) cut.clusters.lend(cut.mesh.positions, cut.mesh.indices).value();  // without its order
+        const TriangleMesh now = deformed(cut.mesh, static_cast<float>(step));
+        cut.clusters.refit(now.positions, step % 2 == 0 ? now.indices : mesh.indices).value();
+        cut.mesh = now;
+        scene.objects.push_back({&cut, glm::dmat4(1.0)});
+        const Camera camera{.position = {90.0 * std::cos(step), 25.0, 90.0 * std::sin(step)},
+                            .forward = {-std::cos(step), -0.2, -std::sin(step)}};
+        const Checked checked = check(scene, camera, 120, 80, static_cast<std::uint64_t>(step), culler);
+        all.lost += checked.lost;
+        all.owners += checked.owners;
+        all.listed += checked.listed;
+        all.total += checked.total;
+    }
+    CHECK(all.lost == 0);
+    CHECK(all.owners > 1000);
+    CHECK(all.listed < all.total);
+}
+
+TEST_CASE("a deformed mesh that cannot be taken is refused, and the clusters stay as they were") {
+    oracle::NearMisses random(11);
+    const TriangleMesh mesh = hills(5, 50.0f, 5.0f, random);
+    const ClusteredMesh before = ClusteredMesh::cut(mesh.positions, mesh.indices).value();
+    ClusteredMesh cut = before;
+    TriangleMesh bad = mesh;
+    bad.positions[7].x = std::numeric_limits<float>::quiet_NaN();
+    const auto nan = cut.refit(bad.positions, bad.indices);
+    CHECK(nan.error().code == ErrorCode::non_finite);
+    CHECK(nan.error().item == 7);
+    bad = mesh;
+    bad.indices.resize(bad.indices.size() - 3);
+    CHECK(cut.refit(bad.positions, bad.indices).error().code == ErrorCode::invalid_argument);
+    bad = mesh;
+    bad.indices[5] = static_cast<std::uint32_t>(mesh.positions.size());
+    CHECK(cut.refit(bad.positions, bad.indices).error().item == 5);
+    CHECK(ClusteredMesh().refit(mesh.positions, mesh.indices).error().code == ErrorCode::invalid_argument);
+    CHECK(ClusteredMesh().refit({}, {}).error().code == ErrorCode::empty);
+    CHECK(same(cut, before));
+    CHECK(cut.identity() == before.identity());
+}
+
 // Every vertex of every triangle has a place of its own.
 TriangleMesh unwelded(const TriangleMesh& mesh) {
     TriangleMesh result;
@@ -299,6 +395,83 @@ struct StoredBytes {
         return !read && read.error().code == ErrorCode::parse;
     }
 };
+
+// How many half edges vertices reach from the middle at most, in more digits than double has.
+long double reach_of(const ClusterBox& box, const std::vector<glm::vec3>& vertices) {
+    using Vec = std::array<long double, 3>;
+    const auto cross = [](const Vec& a, const Vec& b) {
+        return Vec{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+    };
+    const auto dot = [](const Vec& a, const Vec& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
+    std::array<Vec, 3> edges;
+    for (std::size_t k = 0; k < 3; ++k) edges[k] = {box.half_edges[k].x, box.half_edges[k].y, box.half_edges[k].z};
+    long double most = 0.0L;
+    for (const glm::vec3& p : vertices)
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec normal = cross(edges[(k + 1) % 3], edges[(k + 2) % 3]);
+            Vec from_center;
+            for (std::size_t i = 0; i < 3; ++i) {
+                const auto axis = static_cast<glm::length_t>(i);
+                from_center[i] = static_cast<long double>(p[axis]) - static_cast<long double>(box.center[axis]);
+            }
+            const long double share = std::abs(dot(from_center, normal) / dot(edges[k], normal));
+            most = share <= most ? most : share;
+        }
+    return most;
+}
+
+TEST_CASE("bytes are refused if and only if a box does not contain its triangles, or the mesh's box all of them") {
+    oracle::NearMisses random(19);
+    int taken = 0, refused = 0;
+    for (int round = 0; round < 60; ++round) {
+        TriangleMesh mesh = hills(4, 50.0f, 5.0f, random);
+        const auto away = static_cast<float>(std::pow(10.0, random.number(-3, 5)));
+        for (glm::vec3& p : mesh.positions) p += glm::vec3(away, 0.0f, -0.3f * away);
+        const ClusteredMesh cut =
+            ClusteredMesh::cut(mesh.positions, mesh.indices, {.max_triangles = round % 3 == 0 ? 1u : 7u}).value();
+        const std::size_t clusters = cut.clusters().size();
+        std::vector<std::vector<glm::vec3>> vertices(clusters + 1);
+        for (std::size_t c = 0; c < clusters; ++c)
+            for (std::uint32_t t = 0; t < 3 * cut.triangles_of(c); ++t) {
+                const std::uint32_t triangle = cut.triangle_order()[cut.clusters()[c].first_triangle + t / 3];
+                vertices[c].push_back(mesh.positions[mesh.indices[3 * std::size_t{triangle} + t % 3]]);
+                vertices[clusters].push_back(vertices[c].back());
+            }
+        const StoredBytes whole(cut);
+        REQUIRE_FALSE(whole.is_refused());
+        for (int change = 0; change < 100; ++change) {
+            // A bit of a box's centers, edges and exponent, or of the mesh's box.
+            StoredBytes forged = whole;
+            const bool of_all = random.index(6) == 0;
+            const std::size_t c = of_all ? clusters : random.index(static_cast<unsigned>(clusters));
+            const std::size_t begin = of_all ? StoredBytes::kHeader - 24 : whole.boxes + 32 * c;
+            const std::size_t word = begin + 4 * random.index(of_all ? 6 : 8);
+            forged.set(word, forged.word(word) ^ std::uint32_t{1} << random.index(24));
+            ClusterBox box;
+            if (of_all) {
+                glm::vec3 numbers[2];
+                std::memcpy(numbers, &forged.bytes[begin], sizeof numbers);
+                box.center = numbers[0];
+                for (glm::length_t k = 0; k < 3; ++k) box.half_edges[std::size_t(k)][k] = numbers[1][k];
+            } else {
+                ClusteredMesh::PackedBox packed;
+                std::memcpy(&packed, &forged.bytes[begin], sizeof packed);
+                box = packed.unpacked();
+            }
+            const long double reach = reach_of(box, vertices[c]);
+            CAPTURE(static_cast<double>(reach));
+            if (forged.is_refused()) {
+                ++refused;
+                CHECK_FALSE(reach < 1.0L - 0x1p-40L);
+            } else {
+                ++taken;
+                CHECK(reach <= 1.0L + 0x1p-55L);
+            }
+        }
+    }
+    CHECK(taken > 1000);
+    CHECK(refused > 1000);
+}
 
 TEST_CASE("bytes that are one off in a count, an index or a sign are refused, though all lists have that length") {
     oracle::NearMisses random(13);

@@ -175,6 +175,43 @@ TEST_SUITE("depth/margins") {
         });
     }
 
+    // A renderer that clips it draws other triangles, whose corners and planes are rounded once more.
+    TEST_CASE("a hidden triangle that rounding may move through the near plane is listed, and one before it is not") {
+        const float near = 0.1f;
+        glm::mat4 to_clip(1.0f);
+        to_clip[2] = {0.0f, 0.0f, 0.0f, -1.0f}, to_clip[3] = {0.0f, 0.0f, near, 0.0f};
+        TriangleMesh mesh;
+        mesh.positions = {{-1, -1, -0.2f}, {3, -1, -0.2f}, {-1, 3, -0.2f}};
+        mesh.indices = {0, 1, 2};
+        const CutMesh wall(mesh);
+        // Both corners on the left are beside the picture; so is all of the triangle that is nearer than the wall.
+        const auto listed = [&](float left) {
+            mesh.positions = {{0.5f, 0, -left}, {-50, -50, -100}, {-50, 50, -100},   // the one that is asked
+                              {2, 0, 1},        {-50, -50, -101}, {-50, 50, -101}};  // surely through the near plane
+            mesh.indices = {0, 1, 2, 3, 4, 5};
+            const CutMesh behind(mesh, 2, false);
+            REQUIRE(behind.clusters.clusters().size() == 1);
+            const auto first = static_cast<std::uint32_t>(
+                std::find_if(behind.mesh.indices.begin(), behind.mesh.indices.end(), [](auto i) { return i < 3; }) -
+                behind.mesh.indices.begin());
+            depth::DepthCuller culler;
+            const depth::DepthObject objects[] = {{&wall.clusters, to_clip}, {&behind.clusters, to_clip}};
+            const auto found = culler.find_visible(objects, {64, 64});
+            REQUIRE(found);
+            for (const depth::VisibleCluster& c : *found)
+                if (c.object == 1) return (c.triangles >> first / 3 & 1) != 0;
+            return false;
+        };
+        // Coordinates are rounded by up to 2^-21 of the sum of their terms: depth's is 0.1, that of w 101.
+        const float error = (near + 101.0f) * 0x1p-21f;
+        CHECK(listed(near - 2 * error));
+        CHECK(listed(near));
+        CHECK(listed(near + 0.5f * error));
+        CHECK(listed(near + error));
+        CHECK(!listed(near + 3 * error));
+        CHECK(!listed(2 * near));
+    }
+
     TEST_CASE("surfaces through the near plane, with corners at samples, hide no more than they cover") {
         const auto build = [](Aim& aim) {
             const double near = aim.meshes.some(0.01, 1.0);

@@ -465,8 +465,9 @@ TEST_SUITE("world/picture_view") {
 
         REQUIRE(world.set_vertices(mesh, wider.positions));
         (void)world.update();
-        const auto recut = depth::ClusteredMesh::cut(wider.positions, wider.indices);
-        CHECK(world.clusters_of(mesh)->serialise() == recut->serialise());
+        depth::ClusteredMesh fitted = precut;
+        REQUIRE(fitted.refit(wider.positions, wider.indices));
+        CHECK(world.clusters_of(mesh)->serialise() == fitted.serialise());
     }
 
     TEST_CASE("clusters read the World's positions in place, and views are as of the last update all the same") {
@@ -477,8 +478,9 @@ TEST_SUITE("world/picture_view") {
             world.add_mesh({.positions = round.positions, .indices = round.indices, .clusters = true}).value();
         (void)world.add({.mesh = mesh, .transform = Transform{glm::dmat3(1.0), {0, 0, -5}}}).value();
         (void)world.update();
+        auto cut = depth::ClusteredMesh::cut(round.positions, round.indices).value();
         const auto memory = [&] {
-            auto cut = depth::ClusteredMesh::cut(round.positions, round.indices).value();
+            REQUIRE(cut.refit(round.positions, round.indices));
             REQUIRE(cut.lend(round.positions, round.indices, depth::IndexOrder::original));
             return cut.memory();
         };
@@ -499,6 +501,7 @@ TEST_SUITE("world/picture_view") {
         (void)world.update();
         CHECK(seen() != before);
         CHECK(world.clusters_of(mesh)->memory() == memory());
+        CHECK(std::ranges::equal(world.clusters_of(mesh)->triangle_order(), cut.triangle_order()));
         // Many more meshes, so that the World's lists move.
         for (int i = 0; i < 100; ++i)
             (void)world.add_mesh({.positions = round.positions, .indices = round.indices, .clusters = true}).value();

@@ -24,6 +24,11 @@ struct Wall {
     std::uint32_t model = 0;
     crofton::Transform transform;
 };
+struct Part {
+    crofton::Region region;
+    glm::dvec3 origin{0.0};
+    crofton::RegionHandle handle = {};
+};
 std::vector<std::uint64_t> drawn;
 std::size_t drawn_of_regions = 0;
 void fail_loading(const std::string& why) {
@@ -84,6 +89,53 @@ TEST_SUITE("world/regions guide") {
         REQUIRE(hit.has_value());
         CHECK(hit->object == falling);
         CHECK(!world.contains(west));
+    }
+
+    TEST_CASE("the guide's code names an object of a region for a saved game, and shifts the origin") {
+        std::vector<Part> parts;
+        for (int i = 0; i < 3; ++i) {
+            std::vector<crofton::RegionObject> doors(4);
+            for (std::size_t d = 0; d < doors.size(); ++d)
+                doors[d].bound = crofton::Sphere{{4.0 * static_cast<double>(d), 0.0, 0.0}, 1.0};
+            parts.push_back({crofton::Region::prepare(doors).value(), glm::dvec3(100.0 * i, 0.0, 0.0)});
+        }
+        const std::size_t number = 1;
+        crofton::World played;
+        for (Part& part : parts) part.handle = played.attach(part.region, part.origin).value();
+        crofton::ObjectHandle opened_door = played.object_in(parts[number].handle, 2).value();
+        played.update().value();
+        std::uint32_t place = 0;
+        {
+            const crofton::World& world = played;
+            // The parts that are loaded, and where they stand. Saved: the number of a part, and the place of its
+            // object.
+            const auto saved = world.place_of(opened_door).value().index;
+            place = saved;
+        }
+        crofton::World world;
+        const auto saved = place;
+        // After loading: regions may be attached in any order.
+        for (Part& part : parts) part.handle = world.attach(part.region, part.origin).value();
+        opened_door = world.object_in(parts[number].handle, saved).value();
+        world.set_hidden(opened_door, true).value();
+
+        world.update().value();
+        const auto door_at = [&](double x) { return world.raycast({{x, 0.0, 10.0}, {0.0, 0.0, -1.0}}).has_value(); };
+        CHECK(door_at(104.0));
+        CHECK_FALSE(door_at(108.0));
+
+        const glm::dvec3 shift(100.0, 0.0, 0.0);
+        for (Part& part : parts) {
+            world.detach(part.handle).value();
+            part.origin -= shift;
+            part.handle = world.attach(part.region, part.origin).value();
+        }
+
+        world.update().value();
+        CHECK(door_at(4.0));
+        CHECK(door_at(8.0));  // is not hidden any more
+        CHECK(door_at(-100.0));
+        CHECK_FALSE(door_at(204.0));
     }
 
     TEST_CASE("the guide's code makes a street of walls, which rays hit and things hide behind") {

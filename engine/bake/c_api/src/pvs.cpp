@@ -31,6 +31,19 @@ crofton_status crofton_pvs_open(const char* path, crofton_pvs** pvs) {
     });
 }
 
+crofton_status crofton_pvs_read(const uint8_t* bytes, size_t count, crofton_pvs** pvs) {
+    CROFTON_CHECK(check_array(bytes, count, __func__));
+    CROFTON_CHECK(check_pointer(pvs, __func__));
+    const char* const function = __func__;
+    return recover(function, [&] {
+        const auto* const first = reinterpret_cast<const std::byte*>(bytes);
+        const Vector<std::byte> copied(first, first + count);  // starts at a multiple of 64
+        auto read = pvs::Pvs::from_memory(copied);
+        if (!read) return report(read.error(), function);
+        return create(pvs, function, std::move(*read));
+    });
+}
+
 crofton_status crofton_pvs_destroy(crofton_pvs* pvs) {
     return destroy(pvs, __func__);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <crofton/bake/baked_region.hpp>
 #include <crofton/core/recovery.hpp>
+#include <crofton/core/stop_signal.hpp>
 #include <utility>
 
 namespace crofton::bake {
@@ -67,16 +68,26 @@ class Meshes {
 Result<Region> prepare(const BakedScene& scene, boxtree::BoxTree* tree, const BakedRegionOptions& options,
                        Executor& executor) {
     return detail::recover([&]() -> Result<Region> {
+        constexpr double kChecked = 0.2;  // of the time
+        const RegionOptions& asked = options.region;
+        detail::PartOfStop checking{asked.should_stop, asked.stop_user, 0.0, kChecked};
+        detail::PartOfStop preparing{asked.should_stop, asked.stop_user, kChecked, 1.0};
         if (tree != nullptr && !options.trust_contents)
-            if (auto valid = tree->validate(); !valid)
-                return fail(ErrorCode::parse, valid.error().item, {"stored ", valid.error().message});
+            if (auto valid = tree->validate(detail::PartOfStop::ask, &checking); !valid)
+                return valid.error().code == ErrorCode::cancelled
+                           ? detail::cancelled("region")
+                           : fail(ErrorCode::parse, valid.error().item, {"stored ", valid.error().message});
         const std::span<const InstanceRecord> instances = scene.instances();
         const std::span<const std::uint32_t> layers = scene.tree().layer_masks();
         const Vector<std::uint32_t> kinds = occluders_of_instances(scene, options);
         Meshes meshes(scene, options);
-        Vector<RegionObject> objects(instances.size());
+        constexpr std::size_t kBetweenQuestions = 4096;
+        detail::StopSignal stop(detail::PartOfStop::ask, &checking);
+        Vector<RegionObject> objects;
+        objects.reserve(instances.size());
         for (std::uint32_t i = 0; i < instances.size(); ++i) {
-            RegionObject& object = objects[i];
+            if (i % kBetweenQuestions == 0 && stop.is_raised(1.0)) return detail::cancelled("region");
+            RegionObject& object = objects.emplace_back();
             object.user = i;
             object.layers = layers[i];
             object.collides_with = options.collides_with;
@@ -89,6 +100,8 @@ Result<Region> prepare(const BakedScene& scene, boxtree::BoxTree* tree, const Ba
             object.transform = scene.nodes()[instances[i].node].world;
         }
         RegionOptions prepared = options.region;
+        prepared.should_stop = detail::PartOfStop::ask;
+        prepared.stop_user = &preparing;
         prepared.meshes = meshes.all();
         prepared.built = tree;
         return Region::prepare(objects, prepared, executor);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <crofton/bake/baked_scene.hpp>
 #include <crofton/core/recovery.hpp>
+#include <crofton/core/stop_signal.hpp>
 
 #include <string>
 
@@ -85,9 +86,11 @@ Result<void> BakedScene::check_instances() const {
     return {};
 }
 
-Result<BakedScene> BakedScene::from_memory(std::span<const std::byte> file, Executor& executor) {
+Result<BakedScene> BakedScene::from_memory(std::span<const std::byte> file, Executor& executor,
+                                           StopCallback should_stop, void* stop_user) {
     return detail::recover([&]() -> Result<BakedScene> {
-        const auto reader = Reader::open(file, executor);
+        detail::StopSignal stop(should_stop, stop_user);
+        const auto reader = Reader::open(file, executor, &stop);
         if (!reader) return reader.error();
         BakedScene baked;
         const Result<void> taken[] = {
@@ -100,16 +103,20 @@ Result<BakedScene> BakedScene::from_memory(std::span<const std::byte> file, Exec
         for (const auto& each : taken)
             if (!each) return each.error();
         if (const auto good = baked.check_meshes(); !good) return good.error();
+        if (stop.is_raised(0.5)) return detail::cancelled("baked scene");
         auto tree = read_tree(*reader);
         if (!tree) return tree.error();
         baked.tree_.emplace(std::move(*tree));
+        if (stop.is_raised(0.7)) return detail::cancelled("baked scene");
         if (const auto good = baked.check_instances(); !good) return good.error();
         const auto looks = read_looks(*reader, baked.meshes_.size());
         if (!looks) return looks.error();
         baked.looks_ = *looks;
+        if (stop.is_raised(0.8)) return detail::cancelled("baked scene");
         auto clusters = read_clusters(*reader, baked.meshes_);
         if (!clusters) return clusters.error();
         baked.clusters_ = std::move(*clusters);
+        if (stop.is_raised(0.9)) return detail::cancelled("baked scene");
         auto occluders = read_occluders(*reader, baked.nodes_.size());
         if (!occluders) return occluders.error();
         baked.occluders_ = std::move(*occluders);

@@ -109,7 +109,7 @@ Vector<std::byte> Writer::finish() {
     return file;
 }
 
-Result<Reader> Reader::open(std::span<const std::byte> file, Executor& executor) {
+Result<Reader> Reader::open(std::span<const std::byte> file, Executor& executor, detail::StopSignal* stop) {
     return detail::recover([&]() -> Result<Reader> {
         CROFTON_ASSERT(reinterpret_cast<std::uintptr_t>(file.data()) % kAlignment == 0,
                        "the bytes start at a multiple of 64");
@@ -125,6 +125,9 @@ Result<Reader> Reader::open(std::span<const std::byte> file, Executor& executor)
         if (const auto good = check_places(file, reader.sections_); !good) return good.error();
         for (std::size_t i = 0; i < reader.sections_.size(); ++i) {
             const Section& section = reader.sections_[i];
+            if (stop != nullptr &&
+                stop->is_raised(0.5 * static_cast<double>(section.offset) / static_cast<double>(file.size())))
+                return detail::cancelled("container");
             if (checksum(file.subspan(section.offset, section.size), executor) != section.checksum)
                 return damaged({"section '", name_of(section), "' is damaged (its checksum differs)"}, i);
         }
@@ -147,7 +150,7 @@ Result<std::span<const std::byte>> Reader::find(std::string_view name, std::size
         if (section.element_size != element_size) return damaged({"section '", name, "' has elements of another size"});
         return file_.subspan(section.offset, section.size);
     }
-    return damaged({"section '", name, "' is missing"});
+    return damaged({"section '", name, "' is missing: is this a file of another kind?"});
 }
 
 }  // namespace crofton::bake

@@ -4,6 +4,7 @@
 #include <crofton/bake/container.hpp>
 #include <crofton/bake/region_files.hpp>
 #include <crofton/core/recovery.hpp>
+#include <crofton/core/stop_signal.hpp>
 #include <crofton/geometry/finite.hpp>
 #include <limits>
 #include <string_view>
@@ -234,12 +235,19 @@ Result<Region> open_region(const std::string& folder, const RegionFile& file, co
     if (!mapped) return mapped.error();
     if (mapped->bytes().size() != file.bytes)
         return fail(ErrorCode::parse, kNoItem, {path, ": is not the file that the index names: its size is another"});
-    auto baked = BakedScene::from_memory(mapped->bytes(), executor);
+    constexpr double kRead = 0.35;  // of the time
+    detail::PartOfStop reading{options.region.should_stop, options.region.stop_user, 0.0, kRead};
+    detail::PartOfStop preparing{options.region.should_stop, options.region.stop_user, kRead, 1.0};
+    auto baked = BakedScene::from_memory(mapped->bytes(), executor, detail::PartOfStop::ask, &reading);
+    if (!baked && baked.error().code == ErrorCode::cancelled) return baked.error();
     if (!baked) return fail(baked.error().code, baked.error().item, {path, ": ", baked.error().message});
     if (baked->instances().size() != file.objects)
         return fail(ErrorCode::parse, kNoItem,
                     {path, ": is not the file that the index names: it has ", baked->instances().size(), " instances"});
-    auto region = prepare_region(std::move(*baked), options, executor);
+    BakedRegionOptions prepared = options;
+    prepared.region.should_stop = detail::PartOfStop::ask;
+    prepared.region.stop_user = &preparing;
+    auto region = prepare_region(std::move(*baked), prepared, executor);
     if (!region && region.error().code != ErrorCode::out_of_memory && region.error().code != ErrorCode::cancelled)
         return fail(region.error().code, region.error().item, {path, ": ", region.error().message});
     return region;

@@ -165,8 +165,9 @@ bool BoxTree::rebuild_step(std::size_t budget) {
     return true;
 }
 
-Result<void> BoxTree::validate() const {
-    return boxtree::validate(*structure_, Trust::nothing);
+Result<void> BoxTree::validate(StopCallback should_stop, void* stop_user) const {
+    detail::StopSignal stop(should_stop, stop_user);
+    return boxtree::validate(*structure_, Trust::nothing, &stop);
 }
 
 }  // namespace crofton::boxtree

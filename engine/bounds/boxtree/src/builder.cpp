@@ -86,7 +86,7 @@ bool Builder::step(std::size_t budget, std::span<const Obb> boxes, const Movers&
     while (next_ < subtrees_.size()) {
         result_.leaves.resize(subtrees_[next_].first_leaf + std::size_t{subtrees_[next_].leaves});
         if (subtrees_[next_].is_leaf()) {
-            build(next_++, subtree_builder_, boxes);
+            (void)build(next_++, subtree_builder_, boxes, ~std::size_t{0}, [] { return false; });
             continue;
         }
         if (!std::exchange(building_, true)) subtree_builder_.start(subtrees_[next_], middle_);
@@ -97,10 +97,12 @@ bool Builder::step(std::size_t budget, std::span<const Obb> boxes, const Movers&
     return true;
 }
 
-void Builder::build(std::size_t subtree, SubtreeBuilder& with, std::span<const Obb> boxes) {
+bool Builder::build(std::size_t subtree, SubtreeBuilder& with, std::span<const Obb> boxes, std::size_t budget,
+                    FunctionRef<bool()> wants_stop) {
     with.start(subtrees_[subtree], middle_);
-    std::size_t budget = ~std::size_t{0};
-    (void)with.step(budget, cost_, orientation_, boxes, result_);
+    for (std::size_t left = budget; !with.step(left, cost_, orientation_, boxes, result_); left = budget)
+        if (wants_stop()) return false;
+    return !wants_stop();
 }
 
 bool Builder::prepare(std::size_t budget, std::span<const Obb> boxes, const Movers& movers) {

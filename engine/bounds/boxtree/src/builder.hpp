@@ -5,6 +5,7 @@
 #include <crofton/boxtree/layout.hpp>
 #include <crofton/core/executor.hpp>
 #include <crofton/core/memory.hpp>
+#include <crofton/core/stop_signal.hpp>
 #include <crofton/geometry/box.hpp>
 #include <crofton/measure/measure.hpp>
 #include <span>
@@ -39,7 +40,8 @@ class Builder {
     // Notes where the item is.
     void add(ItemId id, const Obb& box);
     // All of add() and prepare() for items 0 … boxes.size() − 1, shared among threads; the same result.
-    void prepare_all(std::span<const Obb> boxes, const Movers& movers, Executor& executor);
+    // Returns earlier once the signal is raised.
+    void prepare_all(std::span<const Obb> boxes, const Movers& movers, detail::StopSignal& stop, Executor& executor);
 
     // After the last add, a step of about `budget` items' worth; true when result() is ready. Same result for any
     // budgets, if the boxes of the items that were added stay as they are; they may change, to the result's
@@ -51,7 +53,9 @@ class Builder {
     bool prepare(std::size_t budget, std::span<const Obb> boxes, const Movers& movers);
     [[nodiscard]] std::span<const Subtree> subtrees() const { return subtrees_; }
     void make_room_for_leaves() { result_.leaves.resize(leaf_count_); }  // before the first build()
-    void build(std::size_t subtree, SubtreeBuilder& with, std::span<const Obb> boxes);
+    // Asks after each `budget` whether to stop; false if so.
+    bool build(std::size_t subtree, SubtreeBuilder& with, std::span<const Obb> boxes, std::size_t budget,
+               FunctionRef<bool()> wants_stop);
 
     [[nodiscard]] std::size_t visits() const { return subtree_builder_.visits(); }  // by step(), of items
 

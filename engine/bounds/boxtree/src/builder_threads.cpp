@@ -13,7 +13,8 @@ constexpr std::size_t kItemsAtOnce = 16384;
 
 }  // namespace
 
-void Builder::prepare_all(std::span<const Obb> boxes, const Movers& movers, Executor& executor) {
+void Builder::prepare_all(std::span<const Obb> boxes, const Movers& movers, detail::StopSignal& stop,
+                          Executor& executor) {
     keys_.resize(boxes.size());
     detail::recoverable_for(executor, boxes.size(), kItemsAtOnce, [&](std::size_t begin, std::size_t end, unsigned) {
         for (std::size_t i = begin; i < end; ++i) keys_[i] = key_of(static_cast<ItemId>(i), boxes[i]);
@@ -21,13 +22,19 @@ void Builder::prepare_all(std::span<const Obb> boxes, const Movers& movers, Exec
     if (boxes.size() <= small_crowd_) {
         place_all();
     } else {
+        if (stop.is_raised(0.0)) return;
         sort_keys(executor);
         phase_ = Phase::crowding;
     }
-    while (phase_ != Phase::label && phase_ != Phase::ready) prepare_on(~std::size_t{0} / 16, boxes, movers);
+    while (phase_ != Phase::label && phase_ != Phase::ready) {
+        if (stop.is_raised(0.1)) return;
+        prepare_on(kItemsAtOnce, boxes, movers);
+    }
     if (phase_ == Phase::ready) return;
     label_items(executor);
+    if (stop.is_raised(0.2)) return;
     bound_clusters(boxes, executor);
+    if (stop.is_raised(0.2)) return;
     (void)place_clusters(~std::size_t{0});
 }
 

@@ -175,7 +175,7 @@ Result<void> validate_leaf(const Structure& structure, LeafId l, Trust trust) {
 
 }  // namespace
 
-Result<void> validate(const Structure& structure, Trust trust) {
+Result<void> validate(const Structure& structure, Trust trust, detail::StopSignal* stop) {
     const Items& items = structure.items();
     const std::span<const Node> nodes = structure.nodes();
     const std::span<const Leaf> leaves = structure.leaves();
@@ -190,12 +190,19 @@ Result<void> validate(const Structure& structure, Trust trust) {
         if (nodes[n].count > kWidth) return broken(n, "a node has more than 16 children");
     if (auto valid = validate_axes(structure); !valid) return valid;
     std::size_t reached = 1, in_leaves = 0;
+    const auto wants_stop = [&](std::size_t done) {
+        constexpr std::size_t kBetweenQuestions = 256;
+        return stop != nullptr && done % kBetweenQuestions == 0 &&
+               stop->is_raised(static_cast<double>(done) / static_cast<double>(nodes.size() + leaves.size()));
+    };
     for (NodeId n = 0; n < nodes.size(); ++n) {
+        if (wants_stop(n)) return detail::cancelled("box tree");
         if (auto valid = validate_node(structure, n, trust); !valid) return valid;
         reached += nodes[n].count;
     }
     if (reached != nodes.size() + leaves.size()) return broken(kNoItem, "a node or leaf is below no node");
     for (LeafId l = 0; l < leaves.size(); ++l) {
+        if (wants_stop(nodes.size() + l)) return detail::cancelled("box tree");
         if (auto valid = validate_leaf(structure, l, trust); !valid) return valid;
         in_leaves += leaves[l].count;
     }

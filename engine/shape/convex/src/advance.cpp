@@ -91,7 +91,7 @@ class Advancement {
     [[nodiscard]] bool begins_in_contact();
     [[nodiscard]] Contact nearest(double near, bool& reached);
     [[nodiscard]] Contact contact();
-    [[nodiscard]] bool meet_after(double step);
+    [[nodiscard]] bool meet_after(double step, bool closed);
     [[nodiscard]] double proven(const Contact& now) const {
         return (now.lower - flight_.path_error()) * (1.0 - 0x1p-40);
     }
@@ -180,13 +180,16 @@ Contact Advancement::contact() {
     return {0.0, 0.0, parted_, d.on_a, d.on_b};
 }
 
-// Whether the shapes surely overlap a little later: then they touch before.
-bool Advancement::meet_after(double step) {
+// Whether the shapes surely overlap a little later: then they touch before. `closed`: by the closed form alone.
+bool Advancement::meet_after(double step, bool closed) {
     const double now = flight_.time();
     flight_.move_to(now + step);
     const ShapeAtPose a = flight_.a(), b = flight_.b();
     bool meet = false;
-    if (!is_half_space(a) && !is_half_space(b)) {
+    if (closed) {
+        Contact later;
+        meet = contact_in_closed_form(a, b, later) && later.distance < -2.0 * flight_.path_error();
+    } else if (!is_half_space(a) && !is_half_space(b)) {
         const Pair pair(a, b);
         const Nearest core = nearest_points(pair, &cache_, pair.rounding(), pair.rounding());
         meet = core.relation == Relation::overlapping || core.upper <= pair.rounding() - pair.doubt();
@@ -244,9 +247,10 @@ Impact Advancement::run() {
         if (!within && early_ < options_.duration && closing(early_ - flight_.time()) < gap - tolerance)
             return miss(steps);
         if (touching && !flight_.turns()) return first;
-        // The way to a touch that turns is long; a step beyond it tells as much.
-        if (within && !was_within && !touching && !starts && flight_.turns() &&
-            meet_after(std::min(left, closing.safe_step(2.0 * gap, left))))
+        // The way to a touch that turns is long, and the closed form leaves the last of it to a search; a step beyond
+        // the touch tells as much.
+        if (within && !was_within && !touching && (flight_.turns() ? !starts : now.closed) &&
+            meet_after(std::min(left, closing.safe_step(2.0 * gap, left)), !flight_.turns()))
             return first;
         lifting = touching;
         const double kept = within ? std::max(0x1p-12 * gap, 64.0 * flight_.path_error()) : 0.5 * tolerance;

@@ -43,6 +43,9 @@ double area_of(const Manifold& m) {
 // would else lose all of its ids whenever another corner becomes the deepest.
 void keep_choice(Manifold& manifold, const GatheredPoints& points, double kept, PairCache& cache) {
     const auto end = cache.chosen + 4;
+    std::uint32_t numbers[4] = {};
+    for (int i = 0; i < manifold.count; ++i) numbers[i] = number_of(manifold.points[i]);
+    if (std::equal(numbers, numbers + 4, cache.chosen)) return;
     Manifold before;
     double deepest = -std::numeric_limits<double>::infinity();
     for (int i = 0; i < points.count && before.count < 4; ++i) {
@@ -56,7 +59,7 @@ void keep_choice(Manifold& manifold, const GatheredPoints& points, double kept, 
         std::copy_n(before.points, before.count, manifold.points);
         return;
     }
-    for (int i = 0; i < 4; ++i) cache.chosen[i] = i < manifold.count ? number_of(manifold.points[i]) : 0;
+    std::copy_n(numbers, 4, cache.chosen);
 }
 
 Manifold finish(const GatheredPoints& points, const Touch& touch, const ManifoldOptions& options, double size,

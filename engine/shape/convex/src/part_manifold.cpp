@@ -87,6 +87,66 @@ class ManifoldFinder {
 
     // Shapes without surfaces.
     void run_beside(const ShapeAtPose& a, const ShapeAtPose& b, const Beside& beside, PairCache* cache) {
+        if (a.shape.is_convex() && b.shape.is_convex()) {
+            PairCache forgotten;
+            run(a, b, cache != nullptr ? cache : &forgotten);
+            return run_convex_beside(a, b, beside, cache != nullptr ? *cache : forgotten);
+        }
+        (void)find_beside(a, b, beside, false, [&](const Count& own) {
+            for (std::uint32_t i = 0; i < own.parts[0]; ++i)
+                for (std::uint32_t j = 0; j < own.parts[1]; ++j) add_flush_contact(i, j);
+        });
+    }
+
+    // Of two convex shapes that have been asked alone.
+    void run_beside(const ShapeAtPose& a, const ShapeAtPose& b, const NumberedBeside& beside, PairMemory& memory,
+                    PairCache& cache) {
+        numbered_ = &beside;
+        memory_ = &memory;
+        run_convex_beside(a, b, beside.shapes, cache);
+    }
+
+  private:
+    struct Count {
+        std::uint32_t parts[2] = {0, 0};  // of the lists of `flush`
+    };
+    // Of ways out that are as deep within kKeptDepth, neighbors may close one and leave another. So where they close
+    // the face that was kept, the pair is asked without it; and where they make the way longer by more, its other faces
+    // are tried. A face that was kept thus makes no way longer or shorter by more.
+    void run_convex_beside(const ShapeAtPose& a, const ShapeAtPose& b, const Beside& beside, PairCache& cache) {
+        if (found_.all_.empty()) return;
+        Manifold alone = found_.all_[0];
+        const auto find = [&](bool stops) {
+            const auto add_contact = [&](const Count&) { scratch_.flush.add_contact(0, 0, alone); };
+            return find_beside(a, b, beside, stops, add_contact);
+        };
+        if (find(true)) return;
+        cache = {};
+        const Manifold least = alone = contact_manifold(a, b, options_, &cache);
+        (void)find(false);
+        const Pair pair(a, b);
+        const double most = least.depth + kKeptDepth * pair.size;
+        if (least.count == 0 || found_.all_.empty() || !(found_.all_[0].depth > most)) return;
+        for (std::uint16_t list = 0; list < 2; ++list) {
+            const ShapeAtPose& shape = list == 0 ? a : b;
+            for (int face = 0; face < face_count(shape.shape); ++face) {
+                const glm::dvec3 normal = face_normal(shape, face) * (list == 0 ? 1.0 : -1.0);
+                if (pair.extent(normal) + a.shape.radius() + b.shape.radius() > most + 1e-5 * pair.size) continue;
+                PairCache kept;
+                kept.reference = static_cast<std::uint16_t>(list + 1);
+                kept.face = static_cast<std::uint16_t>(face);
+                alone = contact_manifold(a, b, options_, &kept);
+                if (alone.count == 0 || !find(true)) continue;
+                cache = kept;
+                return;
+            }
+        }
+        alone = least;
+        (void)find(false);
+    }
+    // False if it stops, as neighbors have a say.
+    [[nodiscard]] bool find_beside(const ShapeAtPose& a, const ShapeAtPose& b, const Beside& beside, bool stops,
+                                   FunctionRef<void(const Count&)> add_contacts) {
         found_.all_.clear();
         scratch_.list.clear();
         UnionNormals& flush = scratch_.flush;
@@ -94,66 +154,49 @@ class ManifoldFinder {
         Count own;
         add_parts(0, a, b, own.parts[0]);
         add_parts(1, b, a, own.parts[1]);
-        for (std::uint32_t i = 0; i < own.parts[0]; ++i)
-            for (std::uint32_t j = 0; j < own.parts[1]; ++j)
-                add_flush_contact(i, j, a.shape.is_convex() && b.shape.is_convex() ? cache : nullptr);
-        find_beside(a, b, beside, own);
-    }
-
-    // Of two convex shapes that have been asked alone.
-    void run_beside(const ShapeAtPose& a, const ShapeAtPose& b, const NumberedBeside& beside, PairMemory& memory) {
-        if (found_.all_.empty()) return;
-        const Manifold alone = found_.all_[0];
-        found_.all_.clear();
-        scratch_.list.clear();
-        scratch_.flush.start(options_.margin);
-        Count own;
-        add_parts(0, a, b, own.parts[0]);
-        add_parts(1, b, a, own.parts[1]);
-        scratch_.flush.add_contact(0, 0, alone);
-        numbered_ = &beside;
-        memory_ = &memory;
-        find_beside(a, b, beside.shapes, own);
-    }
-
-  private:
-    struct Count {
-        std::uint32_t parts[2] = {0, 0};  // of the lists of `flush`
-    };
-    void find_beside(const ShapeAtPose& a, const ShapeAtPose& b, const Beside& beside, const Count& own) {
-        UnionNormals& flush = scratch_.flush;
+        add_contacts(own);
         const std::size_t wanted = flush.contacts().size();
-        if (wanted == 0) return;
+        if (wanted == 0) return true;
         const bool deep = std::any_of(flush.contacts().begin(), flush.contacts().end(), [&](const auto& contact) {
             return std::abs(contact.depth) > flush_tolerance(a, b);  // what rests flush itself has no way to go
         });
-        if (deep) push_out_of_union(a, b, beside, own);
+        if (deep && have_neighbors_say(a, b, beside, own)) {
+            if (stops) return false;
+            push_out_of_union(a, b, beside, own);
+        }
         add_flush(wanted, false);
         scratch_.list.finish(std::clamp(options_.max_points, 1, 8), found_.all_);
+        return true;
     }
-    void push_out_of_union(const ShapeAtPose& a, const ShapeAtPose& b, const Beside& beside, const Count& own) {
+    [[nodiscard]] bool have_neighbors_say(const ShapeAtPose& a, const ShapeAtPose& b, const Beside& beside,
+                                          const Count& own) {
         UnionNormals& flush = scratch_.flush;
-        const std::size_t wanted = flush.contacts().size();
         Count all = own;
         add_beside(0, beside.a, b, all.parts[0]);
         add_beside(1, beside.b, a, all.parts[1]);
         const bool two_parts = own.parts[0] == 1 && own.parts[1] == 1;
-        const auto is_flush = [&](int list, std::uint32_t shape) { return is_flush_beside(a, b, beside, list, shape); };
-        const auto counts = [&](int list, std::uint32_t part) { return is_flush(list, shape_of_part(list, part)); };
+        const auto counts = [&](int list, std::uint32_t part) {
+            return is_flush_beside(a, b, beside, list, shape_of_part(list, part));
+        };
         const auto touch = [&](std::uint32_t first, std::uint32_t second) { return contact_of_parts(first, second); };
-        if (two_parts ? flush.is_first_left(counts, touch) : !flush.is_any_covered()) return;
+        return two_parts ? !flush.is_first_left(counts, touch) : flush.is_any_covered();
+    }
+    void push_out_of_union(const ShapeAtPose& a, const ShapeAtPose& b, const Beside& beside, const Count& own) {
+        UnionNormals& flush = scratch_.flush;
+        const std::size_t wanted = flush.contacts().size();
+        const auto is_flush = [&](int list, std::uint32_t shape) { return is_flush_beside(a, b, beside, list, shape); };
         // Of those beside only what lies flush: shapes that are deep in each other are no floor.
         flush.keep_parts(0, own.parts[0]);
         flush.keep_parts(1, own.parts[1]);
-        all = own;
+        Count all = own;
         for (std::uint32_t i = 0; i < beside.a.size(); ++i)
             if (is_flush(0, i)) add_parts(0, beside.a[i], b, all.parts[0]);
         for (std::uint32_t i = 0; i < beside.b.size(); ++i)
             if (is_flush(1, i)) add_parts(1, beside.b[i], a, all.parts[1]);
         for (std::uint32_t i = own.parts[0]; i < all.parts[0]; ++i)
-            for (std::uint32_t j = 0; j < own.parts[1]; ++j) add_flush_contact(i, j, nullptr);
+            for (std::uint32_t j = 0; j < own.parts[1]; ++j) add_flush_contact(i, j);
         for (std::uint32_t i = 0; i < own.parts[0]; ++i)
-            for (std::uint32_t j = own.parts[1]; j < all.parts[1]; ++j) add_flush_contact(i, j, nullptr);
+            for (std::uint32_t j = own.parts[1]; j < all.parts[1]; ++j) add_flush_contact(i, j);
         flush.apply(wanted);
     }
     // Whether they are apart, or overlap, by no more than rounding to float. Shapes that only stand near have a gap,
@@ -223,13 +266,12 @@ class ManifoldFinder {
             scratch_.shape_of_part[list].insert(scratch_.shape_of_part[list].end(), count - before, i);
         }
     }
-    [[nodiscard]] Manifold manifold_of_parts(std::uint32_t first, std::uint32_t second,
-                                             PairCache* cache = nullptr) const {
+    [[nodiscard]] Manifold manifold_of_parts(std::uint32_t first, std::uint32_t second) const {
         const Part &a = scratch_.flush.part(0, first), &b = scratch_.flush.part(1, second);
-        return manifold_of({a.shape, a.pose}, {b.shape, b.pose}, cache);
+        return manifold_of({a.shape, a.pose}, {b.shape, b.pose});
     }
-    void add_flush_contact(std::uint32_t first, std::uint32_t second, PairCache* cache) {
-        scratch_.flush.add_contact(first, second, manifold_of_parts(first, second, cache));
+    void add_flush_contact(std::uint32_t first, std::uint32_t second) {
+        scratch_.flush.add_contact(first, second, manifold_of_parts(first, second));
     }
 
     static Manifolds::Scratch& scratch_of(Manifolds& found) {
@@ -263,10 +305,10 @@ class ManifoldFinder {
         add_flush(flush.contacts().size(), false);
     }
 
-    [[nodiscard]] Manifold manifold_of(const ShapeAtPose& a, const ShapeAtPose& b, PairCache* cache = nullptr) const {
+    [[nodiscard]] Manifold manifold_of(const ShapeAtPose& a, const ShapeAtPose& b) const {
         ManifoldOptions all_points = options_;
-        all_points.max_points = cache != nullptr ? options_.max_points : 8;
-        return contact_manifold(a, b, all_points, cache);
+        all_points.max_points = 8;
+        return contact_manifold(a, b, all_points);
     }
     // Parts that lie flush with those within the margin of a shape are wanted as well.
     [[nodiscard]] double near_margin(const ShapeAtPose& shape) const {
@@ -432,10 +474,10 @@ void contact_manifolds(const ShapeAtPose& a, const ShapeAtPose& b, const Beside&
 }
 
 void push_out_of_union(const ShapeAtPose& a, const ShapeAtPose& b, const NumberedBeside& beside,
-                       const ManifoldOptions& options, Manifolds& found, PairMemory& memory) {
+                       const ManifoldOptions& options, Manifolds& found, PairMemory& memory, PairCache& cache) {
     const bool alone = beside.shapes.a.empty() && beside.shapes.b.empty();
     if (!alone && !is_half_space(a) && !is_half_space(b))
-        ManifoldFinder(options, found).run_beside(a, b, beside, memory);
+        ManifoldFinder(options, found).run_beside(a, b, beside, memory, cache);
 }
 
 Manifold deepest_manifold(const ShapeAtPose& a, const ShapeAtPose& b, const ManifoldOptions& options) {

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <crofton/core/drop_spare.hpp>
 #include <glm/common.hpp>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -104,12 +105,31 @@ Result<ClusteredMesh> ClusteredMesh::cut(std::span<const glm::vec3> positions, s
     if (auto checked = check(positions, indices, options); !checked) return checked.error();
     const std::uint32_t most =
         options.max_triangles != 0 ? options.max_triangles : cluster_size_for(indices.size() / 3);
-    ClusteredMesh mesh;
     Groups groups = cut_into_groups(positions, indices, most);
+    return build(positions, indices, std::move(groups.order), groups.ends);
+}
+
+Result<void> ClusteredMesh::refit(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices) {
+    if (indices.size() != std::size_t{3} * triangle_count_)
+        return fail(ErrorCode::invalid_argument, kNoItem, "clusters: the deformed mesh has another number of triangles");
+    if (auto checked = check(positions, indices, {}); !checked) return checked;
+    Vector<std::uint32_t> order(triangle_order().begin(), triangle_order().end()), ends;
+    if (order.empty()) {
+        order.resize(triangle_count_);
+        std::iota(order.begin(), order.end(), 0u);
+    }
+    for (const Cluster cluster : clusters()) ends.push_back(cluster.first_triangle + cluster.triangle_count);
+    *this = build(positions, indices, std::move(order), ends);
+    return {};
+}
+
+ClusteredMesh ClusteredMesh::build(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices,
+                                   Vector<std::uint32_t> order, std::span<const std::uint32_t> ends) {
+    ClusteredMesh mesh;
     PatchBuilder builder(positions, indices);
-    builder.order = std::move(groups.order);
+    builder.order = std::move(order);
     std::uint32_t begin = 0;
-    for (const std::uint32_t end : groups.ends) builder.add(std::exchange(begin, end), end);
+    for (const std::uint32_t end : ends) builder.add(std::exchange(begin, end), end);
     mesh.triangle_count_ = begin;
     builder.packer.pack(mesh);
     for (const std::uint32_t i : indices) mesh.largest_ = (glm::max)(mesh.largest_, glm::abs(positions[i]));

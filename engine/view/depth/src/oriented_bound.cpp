@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <crofton/geometry/expansion.hpp>
 #include <cstdint>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -75,6 +76,34 @@ double away_from_zero(double x) {
     return x < 0.0 ? std::floor(x) : std::ceil(x);
 }
 
+// Bounds how many half edges a point is away from the middle, along each. Cross products of integers below 2^15 are
+// exact. A distance is rounded by 2^-53 of itself, the three products and their sum by less than 4 · 2^-53 of the
+// terms.
+class Shares {
+  public:
+    Shares(const Integers& edges, int exponent) : unit_(std::ldexp(1.0, -exponent)) {
+        std::array<glm::dvec3, 3> doubles;
+        for (std::size_t k = 0; k < 3; ++k) doubles[k] = {edges[k][0], edges[k][1], edges[k][2]};
+        for (std::size_t k = 0; k < 3; ++k) normals_[k] = glm::cross(doubles[(k + 1) % 3], doubles[(k + 2) % 3]);
+        volume_ = std::abs(glm::dot(doubles[0], normals_[0]));
+    }
+    [[nodiscard]] bool is_flat() const { return volume_ == 0.0; }
+    [[nodiscard]] glm::dvec3 of(const glm::dvec3& from_center) const {
+        const glm::dvec3 d = unit_ * from_center;
+        glm::dvec3 share;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double sum = std::abs(glm::dot(d, normals_[k]));
+            const double terms = glm::dot(glm::abs(d), glm::abs(normals_[k]));
+            share[static_cast<glm::length_t>(k)] = (sum + 0x1p-50 * terms) / volume_ * (1.0 + 0x1p-50);
+        }
+        return share;
+    }
+
+  private:
+    std::array<glm::dvec3, 3> normals_;
+    double volume_ = 0.0, unit_;
+};
+
 // The box, aligned or not, by what it is made of.
 class BoxPacker {
   public:
@@ -137,26 +166,12 @@ class BoxPacker {
   private:
     [[nodiscard]] glm::dvec3 from_center(std::uint32_t index) const { return glm::dvec3(positions_[index]) - center_; }
 
-    // Bounds how many half edges points are away from the middle, along each; false if edges lie in a plane. Cross
-    // products of integers below 2^15 are exact. A distance is rounded by 2^-53 of itself, the three products and
-    // their sum by less than 4 · 2^-53 of the terms.
+    // As Shares, of all points; false if edges lie in a plane.
     bool find_shares(glm::dvec3& share) const {
-        std::array<glm::dvec3, 3> edges, normals;
-        for (std::size_t k = 0; k < 3; ++k) edges[k] = {edges_[k][0], edges_[k][1], edges_[k][2]};
-        for (std::size_t k = 0; k < 3; ++k) normals[k] = glm::cross(edges[(k + 1) % 3], edges[(k + 2) % 3]);
-        const double volume = std::abs(glm::dot(edges[0], normals[0]));
-        if (volume == 0.0) return false;
-        const double unit = std::ldexp(1.0, -exponent_);
+        const Shares shares(edges_, exponent_);
+        if (shares.is_flat()) return false;
         share = glm::dvec3(0.0);
-        for (const std::uint32_t i : indices_) {
-            const glm::dvec3 d = unit * from_center(i);
-            for (std::size_t k = 0; k < 3; ++k) {
-                const double sum = std::abs(glm::dot(d, normals[k]));
-                const double terms = glm::dot(glm::abs(d), glm::abs(normals[k]));
-                double& most = share[static_cast<glm::length_t>(k)];
-                most = std::max(most, (sum + 0x1p-50 * terms) / volume * (1.0 + 0x1p-50));
-            }
-        }
+        for (const std::uint32_t i : indices_) share = (glm::max)(share, shares.of(from_center(i)));
         return true;
     }
 
@@ -172,6 +187,18 @@ glm::dvec3 rounded_center(const Axes& axes, const Extents& extents) {
     return glm::dvec3(glm::vec3(middle.x * axes[0] + middle.y * axes[1] + middle.z * axes[2]));
 }
 
+// Whether |p − center| ≤ half, exactly.
+bool is_within(double p, double center, double half) {
+    const auto [high, low] = detail::two_sum(p, -center);
+    const double size = std::abs(high);
+    if (size != half) return size < half;
+    return high < 0.0 ? low >= 0.0 : low <= 0.0;
+}
+
+bool is_within(const glm::vec3& p, const glm::dvec3& center, const glm::dvec3& half) {
+    return is_within(p.x, center.x, half.x) && is_within(p.y, center.y, half.y) && is_within(p.z, center.z, half.z);
+}
+
 }  // namespace
 
 ClusteredMesh::PackedBox bound_of(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices) {
@@ -184,6 +211,34 @@ ClusteredMesh::PackedBox bound_of(std::span<const glm::vec3> positions, std::spa
     BoxPacker box(positions, indices, rounded_center(kAligned, extents));
     box.set_aligned();
     return box.packed();
+}
+
+bool contains(const ClusteredMesh::PackedBox& box, std::span<const glm::vec3> vertices) {
+    Integers edges;
+    for (std::size_t i = 0; i < 9; ++i)
+        edges[i / 3][i % 3] = static_cast<std::int16_t>(box.words[i / 2] >> 16 * (i % 2) & 0xffff);
+    const glm::dvec3 center(box.center[0], box.center[1], box.center[2]);
+    const std::uint32_t exponent = box.words[4] >> 16 & 0xff;
+    bool aligned = true;
+    for (std::size_t i = 0; i < 9; ++i) aligned = aligned && (i % 4 == 0 || edges[i / 3][i % 3] == 0);
+    if (aligned) {
+        const double unit = exponent == 0 ? 0.0 : std::ldexp(1.0, static_cast<int>(exponent) - 127);
+        const glm::dvec3 half = unit * glm::abs(glm::dvec3(edges[0][0], edges[1][1], edges[2][2]));
+        return std::all_of(vertices.begin(), vertices.end(),
+                           [&](const glm::vec3& p) { return is_within(p, center, half); });
+    }
+    const Shares shares(edges, static_cast<int>(exponent) - 127);
+    if (exponent == 0 || shares.is_flat()) return false;
+    return std::all_of(vertices.begin(), vertices.end(), [&](const glm::vec3& p) {
+        const glm::dvec3 share = shares.of(glm::dvec3(p) - center);
+        return share.x <= 1.0 && share.y <= 1.0 && share.z <= 1.0;
+    });
+}
+
+bool contains(const ClusterBox& aligned, std::span<const glm::vec3> vertices) {
+    const glm::dvec3 half(aligned.half_edges[0].x, aligned.half_edges[1].y, aligned.half_edges[2].z);
+    return std::all_of(vertices.begin(), vertices.end(),
+                       [&](const glm::vec3& p) { return is_within(p, glm::dvec3(aligned.center), half); });
 }
 
 // Rounding moves a corner by less than 2^-22 of the coordinates' size.

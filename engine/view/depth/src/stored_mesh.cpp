@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "mesh_packer.hpp"
+#include "oriented_bound.hpp"
 #include "patch.hpp"
 
 namespace crofton::depth {
@@ -82,14 +83,18 @@ struct StoredMesh {
     static Result<void> check_clusters(ClusteredMesh& mesh) {
         const auto patch = Owner<Patch>::make();
         Vector<std::uint8_t> corners;
-        std::uint64_t vertex = 0;
+        std::size_t vertex = 0;
         for (std::size_t c = 0; c < mesh.cluster_count_; ++c) {
             if (!is_box(mesh.box_of(c))) return damaged("a cluster's box is none", c);
             mesh.own_->first_vertices.push_back(static_cast<std::uint32_t>(vertex));
             if (!PatchReader::read_corners(mesh, c, *patch))
                 return damaged("a triangle names a vertex that its cluster does not have", c);
+            const std::span<const glm::vec3> all = mesh.own_->vertices;
+            if (patch->vertex_count > all.size() - vertex)
+                return damaged("a cluster has more vertices than there are", c);
+            if (!contains(mesh.boxes()[c], all.subspan(vertex, patch->vertex_count)))
+                return damaged("a cluster's box does not contain its triangles", c);
             vertex += patch->vertex_count;
-            if (vertex > mesh.own_->vertices.size()) return damaged("a cluster has more vertices than there are", c);
             corners.clear();
             for (std::uint32_t t = 0; t < patch->triangle_count; ++t)
                 for (std::uint32_t k = 0; k < 3; ++k) corners.push_back(static_cast<std::uint8_t>(patch->corner(t, k)));
@@ -103,9 +108,9 @@ struct StoredMesh {
 
     // Also refuses NaN.
     static bool are_within(std::span<const glm::vec3> vertices, const glm::vec3& largest) {
-        const float limit = std::max({largest.x, largest.y, largest.z});
-        return std::all_of(vertices.begin(), vertices.end(),
-                           [limit](const glm::vec3& v) { return is_within(v, limit); });
+        return std::all_of(vertices.begin(), vertices.end(), [&](const glm::vec3& v) {
+            return std::abs(v.x) <= largest.x && std::abs(v.y) <= largest.y && std::abs(v.z) <= largest.z;
+        });
     }
 
     // Of what is lent in order, that order.
@@ -190,6 +195,7 @@ Result<ClusteredMesh> ClusteredMesh::deserialise(std::span<const std::byte> byte
     if (auto checked = StoredMesh::check_clusters(mesh); !checked) return checked.error();
     if (!StoredMesh::are_within(mesh.own_->vertices, mesh.largest_))
         return damaged("a coordinate is beyond the mesh's");
+    if (!contains(mesh.bound(), mesh.own_->vertices)) return damaged("the mesh's box does not contain it");
     mesh.identity_ = next_identity();
     return mesh;
 }

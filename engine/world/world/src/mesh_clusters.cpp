@@ -47,19 +47,23 @@ MeshClusters::Mesh MeshClusters::take(scene::MeshId mesh) {
     return mesh < meshes_.size() ? std::exchange(meshes_[mesh], Mesh()) : Mesh();
 }
 
-bool MeshClusters::update(const scene::Scene& scene) {
-    bool changed = false;
+bool MeshClusters::update(const scene::Scene& scene, Executor& executor) {
+    deformed_.clear();
     for (scene::MeshId id = 0; id < meshes_.size(); ++id) {
         Mesh& mesh = meshes_[id];
         if (!mesh.wanted || scene.is_mesh_removed(id) || mesh.revision == scene.mesh_revision(id)) continue;
         mesh.revision = scene.mesh_revision(id);
-        auto cut = depth::ClusteredMesh::cut(scene.mesh(id).positions, scene.mesh(id).indices);
-        mesh.usable = cut.has_value();
-        if (cut) mesh.cut = std::move(*cut);
-        require_ok(lend(mesh, scene.mesh(id)));
-        changed = true;
+        deformed_.push_back(id);
     }
-    return changed;
+    executor.parallel_for(deformed_.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
+        for (std::size_t i = begin; i < end; ++i) {
+            Mesh& mesh = meshes_[deformed_[i]];
+            const TriangleMesh& triangles = scene.mesh(deformed_[i]);
+            mesh.usable = mesh.cut.refit(triangles.positions, triangles.indices).has_value();
+            require_ok(lend(mesh, triangles));
+        }
+    });
+    return !deformed_.empty();
 }
 
 }  // namespace crofton::world

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The meshes that views list triangle by triangle.
 #pragma once
+#include <crofton/core/executor.hpp>
 #include <crofton/depth/clustered_mesh.hpp>
 #include <crofton/scene/scene.hpp>
 #include <crofton/world/inputs.hpp>
@@ -28,8 +29,8 @@ class MeshClusters {
     [[nodiscard]] Mesh take(scene::MeshId mesh);  // the mesh has none then
     // The mesh's positions are about to change: until the next update() views see it as it is.
     void keep_copy(scene::MeshId mesh);
-    // Cuts what has changed since. Returns whether anything has.
-    bool update(const scene::Scene& scene);
+    // Refits the clusters of meshes that have deformed since. Returns whether any has.
+    bool update(const scene::Scene& scene, Executor& executor);
 
     [[nodiscard]] const Mesh* find(scene::MeshId mesh) const {
         return mesh < meshes_.size() && meshes_[mesh].usable ? &meshes_[mesh] : nullptr;
@@ -37,6 +38,7 @@ class MeshClusters {
 
   private:
     Vector<Mesh> meshes_;
+    Vector<scene::MeshId> deformed_;  // scratch
 };
 
 }  // namespace crofton::world

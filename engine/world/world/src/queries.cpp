@@ -139,9 +139,7 @@ std::optional<ObjectHit> World::State::own_shape_hit(const Ray& ray, std::uint32
     hit.normal = met->normal;
     hit.started_inside = met->started_inside;
     hit.child = met->part.child;
-    const convex::Shape& part =
-        stand.shape.compound() != nullptr ? stand.shape.compound()->part(met->part.child).shape : stand.shape;
-    if (!part.is_convex()) hit.triangle = met->part.triangle;
+    hit.triangle = world::triangle_of(stand.shape, met->part);
     return hit;
 }
 
@@ -343,12 +341,12 @@ std::optional<ClosestObject> World::State::closest(const Aabb& bounds, double ma
     max_distance = std::min(max_distance, kFarthest);
     double rest = 0.0;
     const auto look_at = [&](std::uint32_t id) {
-        const collide::Distance gap = gap_to_object(id, rest);
+        const auto [gap, triangle, child] = gap_to_object(id, rest);
         const bool nearer = !nearest || gap.distance < nearest->distance ||
                             (gap.distance == nearest->distance && id < nearest->object.index);
         if (gap.distance > rest || !nearer) return rest;
         const ObjectRef ref = ref_of(id);
-        nearest = ClosestObject{ref.object, ref.user, gap.distance, gap.on_a, gap.on_b};
+        nearest = ClosestObject{ref.object, ref.user, gap.distance, gap.on_a, gap.on_b, triangle, child};
         return rest = gap.distance;
     };
     const auto is_mesh = [&](std::uint32_t id) { return !has_own_shape(id) && mesh_of_object(id).mesh != nullptr; };
@@ -373,8 +371,8 @@ std::optional<ClosestObject> World::State::closest(const Shape& probe, double ma
     const world::QueryShape asked = world::shape_of(probe);
     return closest(bounds_of(probe), max_distance, filter, [&](std::uint32_t id, double limit) {
         if (has_shape(id)) return gap_to_shape(asked.placed(), id, limit);
-        return world::is_region_index(id) ? gap_to(probe, regions.object(id), regions.box(id))
-                                          : gap_to(probe, table.objects[id], index.box(id));
+        return world::Gap{world::is_region_index(id) ? gap_to(probe, regions.object(id), regions.box(id))
+                                                     : gap_to(probe, table.objects[id], index.box(id))};
     });
 }
 

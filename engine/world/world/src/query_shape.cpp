@@ -44,6 +44,11 @@ QueryShape shape_of(const collide::Capsule& capsule) {
             RigidTransform{glm::dmat3(x, y, glm::cross(x, y)), capsule.begin + 0.5 * way}};
 }
 
+std::uint32_t triangle_of(const convex::Shape& shape, const convex::PartId& part) {
+    const convex::Shape& of = shape.compound() != nullptr ? shape.compound()->part(part.child).shape : shape;
+    return of.is_convex() ? kNoTriangle : part.triangle;
+}
+
 namespace {
 
 // Returns an object's sphere or box.
@@ -129,12 +134,12 @@ bool World::State::overlaps(const convex::ShapeAtPose& probe, std::uint32_t id) 
     return object.pose && (convex::intersects(probe, object.placed()) || point_inside(probe, id));
 }
 
-collide::Distance World::State::gap_to_shape(const convex::ShapeAtPose& probe, std::uint32_t id, double limit) const {
+world::Gap World::State::gap_to_shape(const convex::ShapeAtPose& probe, std::uint32_t id, double limit) const {
     const world::QueryShape object = query_shape_of(id);
-    if (!object.pose) return {std::numeric_limits<double>::infinity(), {}, {}};
-    if (const auto inside = point_inside(probe, id)) return {0.0, *inside, *inside};
+    if (!object.pose) return {{std::numeric_limits<double>::infinity(), {}, {}}};
+    if (const auto inside = point_inside(probe, id)) return {{0.0, *inside, *inside}};
     const convex::Distance gap = convex::distance_within(probe, object.placed(), limit);
-    return {gap.distance, gap.on_a, gap.on_b};
+    return {{gap.distance, gap.on_a, gap.on_b}, world::triangle_of(object.shape, gap.part_b), gap.part_b.child};
 }
 
 }  // namespace crofton

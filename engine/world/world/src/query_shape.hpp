@@ -24,6 +24,15 @@ struct QueryShape {
 [[nodiscard]] QueryShape shape_of(const Sphere& sphere);
 [[nodiscard]] QueryShape shape_of(const collide::Capsule& capsule);
 
+// Returns which triangle a part of the shape is; kNoTriangle for convex ones.
+[[nodiscard]] std::uint32_t triangle_of(const convex::Shape& shape, const convex::PartId& part);
+
+// From a probe to an object.
+struct Gap {
+    collide::Distance distance;
+    std::uint32_t triangle = kNoTriangle, child = 0;  // of the object
+};
+
 inline void sort_by_object(Vector<ObjectRef>& found) {
     std::sort(found.begin(), found.end(),
               [](const ObjectRef& a, const ObjectRef& b) { return a.object.index < b.object.index; });

@@ -19,8 +19,10 @@
 namespace crofton {
 namespace {
 
+constexpr double kTreeFrom = 0.15, kTreeTo = 0.8;  // shares of the time
+
 Error cancelled() {
-    return fail(ErrorCode::cancelled, kNoItem, "region: the callback asked to stop");
+    return detail::cancelled("region");
 }
 
 // What the tree is built over, and what it does not hold.
@@ -37,11 +39,10 @@ bool is_solid(const RegionObject& object) {
 
 Result<void> read(Strided<RegionObject> objects, const RegionOptions& options, detail::StopSignal& stop,
                   Contents& contents) {
-    constexpr std::size_t kBetweenQuestions = 4096;
     if (!options.meshes.empty())
         if (auto added = contents.solids.emplace().add_meshes(options.meshes, stop); !added) return added;
     for (std::size_t i = 0; i < objects.size(); ++i) {
-        if (i % kBetweenQuestions == 0 &&
+        if (i % world::RegionSolids::kBetweenQuestions == 0 &&
             stop.is_raised(0.1 * static_cast<double>(i) / static_cast<double>(objects.size())))
             return cancelled();
         const RegionObject& object = objects[i];
@@ -58,7 +59,7 @@ Result<void> read(Strided<RegionObject> objects, const RegionOptions& options, d
         contents.items.push_back({object.user, object.bound.radius, object.collides_with, object.bound.kind});
     }
     if (!contents.solids) return {};
-    return contents.solids->place(options.max_origin, contents.boxes, contents.layers, contents.items);
+    return contents.solids->place(options.max_origin, contents.boxes, contents.layers, contents.items, stop);
 }
 
 template <class T>
@@ -67,12 +68,19 @@ bool have_same_bits(std::span<const T> a, std::span<const T> b) {
 }
 
 Result<boxtree::BoxTree> tree_over(std::span<const Obb> boxes, std::span<const std::uint32_t> layers,
-                                   const RegionOptions& options, Executor& executor) {
+                                   const RegionOptions& options, detail::StopSignal& stop, Executor& executor) {
     boxtree::BoxTree* const built = options.built;
     if (built != nullptr && built->item_count() == boxes.size() && have_same_bits(built->boxes(), boxes) &&
         have_same_bits(built->layer_masks(), layers))
         return std::move(*built);
-    return boxtree::BoxTree::build(boxes, layers, {.orientation = options.tree}, executor);
+    boxtree::BuildOptions build{.orientation = options.tree};
+    if (options.should_stop != nullptr) {
+        build.should_stop = [](void* signal, double share) {
+            return static_cast<detail::StopSignal*>(signal)->is_raised(kTreeFrom + (kTreeTo - kTreeFrom) * share);
+        };
+        build.stop_user = &stop;
+    }
+    return boxtree::BoxTree::build(boxes, layers, build, executor);
 }
 
 }  // namespace
@@ -95,19 +103,20 @@ Result<Region> Region::prepare(Strided<RegionObject> objects, const RegionOption
         if (auto done = read(objects, options, stop, contents); !done) return done.error();
         Region region;
         if (boxes.empty()) return region;
-        if (stop.is_raised(0.15)) return cancelled();
-        auto tree = tree_over(boxes, layers, options, executor);
-        if (!tree) return tree.error();
-        if (stop.is_raised(0.8)) return cancelled();
+        if (stop.is_raised(kTreeFrom)) return cancelled();
+        auto tree = tree_over(boxes, layers, options, stop, executor);
+        if (!tree) return stop.was_raised() ? cancelled() : tree.error();
+        if (stop.is_raised(kTreeTo)) return cancelled();
         auto data = Owner<world::RegionData>::make(std::move(*tree));
         data->items = std::move(contents.items);
         if (contents.solids) {
-            contents.solids->finish(*data, boxes.size(), executor);
+            if (!contents.solids->finish(*data, boxes.size(), stop, executor)) return cancelled();
             data->max_origin = options.max_origin;
             data->keep = options.keep;
         }
         data->common_layers = ~0u;
         for (std::size_t i = 0; i < boxes.size(); ++i) {
+            if (i % world::RegionSolids::kBetweenQuestions == 0 && stop.is_raised(kTreeTo)) return cancelled();
             data->bounds.include(aabb_of(boxes[i]));
             data->most_radius = std::max(data->most_radius, glm::length(glm::dvec3(boxes[i].half_extents)));
             data->any_layers |= layers[i];

@@ -40,7 +40,7 @@ RegionSolids::RegionSolids() : world_({.pairs = false}, 1) {}
 
 Result<void> RegionSolids::add_meshes(std::span<const RegionMesh> meshes, detail::StopSignal& stop) {
     for (std::size_t i = 0; i < meshes.size(); ++i) {
-        if (stop.is_raised(0.0)) return fail(ErrorCode::cancelled, kNoItem, "region: the callback asked to stop");
+        if (stop.is_raised(0.0)) return detail::cancelled("region");
         MeshDescription description = meshes[i].mesh;
         wants_triangles_.push_back(description.triangles);
         description.triangles = false;  // finish() builds the trees
@@ -98,10 +98,11 @@ std::optional<glm::dvec3> RegionSolids::place_object(const Added& added, const R
 }
 
 Result<void> RegionSolids::place(double max_origin, Vector<Obb>& boxes, Vector<std::uint32_t>& layers,
-                                 Vector<RegionData::Item>& items) {
+                                 Vector<RegionData::Item>& items, detail::StopSignal& stop) {
     World::State& s = *world_.state_;
     require_ok(s.apply_scene(serial_executor()));
     for (std::size_t i = 0; i < added_.size(); ++i) {
+        if (i % kBetweenQuestions == 0 && stop.is_raised(0.1)) return detail::cancelled("region");
         const Added& added = added_[i];
         RegionData::Solid& solid = solids_[i];
         Obb& box = boxes[added.item];
@@ -126,7 +127,7 @@ Result<void> RegionSolids::place(double max_origin, Vector<Obb>& boxes, Vector<s
     return {};
 }
 
-void RegionSolids::finish(RegionData& data, std::size_t item_count, Executor& executor) {
+bool RegionSolids::finish(RegionData& data, std::size_t item_count, detail::StopSignal& stop, Executor& executor) {
     World::State& s = *world_.state_;
     data.meshes.resize(meshes_.size());
     for (std::size_t m = 0; m < meshes_.size(); ++m) {
@@ -143,8 +144,10 @@ void RegionSolids::finish(RegionData& data, std::size_t item_count, Executor& ex
     }
     detail::recoverable_for(executor, data.meshes.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
         for (std::size_t m = begin; m < end; ++m)
-            if (wants_triangles_[m]) data.meshes[m].shape.build(data.meshes[m].triangles, false, serial_executor());
+            if (wants_triangles_[m] && !stop.is_raised(0.8))
+                data.meshes[m].shape.build(data.meshes[m].triangles, false, serial_executor());
     });
+    if (stop.was_raised()) return false;
     data.solid_of_item.assign(item_count, kNoIndex);
     data.solids = std::move(solids_);
     for (std::size_t i = 0; i < added_.size(); ++i) {
@@ -160,6 +163,7 @@ void RegionSolids::finish(RegionData& data, std::size_t item_count, Executor& ex
         data.shapes.push_back(s.object_shapes.take(added.object));
         data.shapes.back().pose = pose;
     }
+    return true;
 }
 
 }  // namespace crofton::world

@@ -13,6 +13,7 @@ namespace crofton::world {
 // then takes them out. Objects with a mesh alone are the most; they are made here, as World::add would.
 class RegionSolids {
   public:
+    static constexpr std::size_t kBetweenQuestions = 4096;  // objects, of the caller's StopCallback
     RegionSolids();
 
     void reserve(std::size_t objects) {
@@ -25,11 +26,11 @@ class RegionSolids {
     // The object at place `item`. Errors: as World::add, and of a shape without bounds.
     [[nodiscard]] Result<void> add(const RegionObject& object, std::uint32_t item);
     // Replaces the boxes, layers and items of the objects that were added. The boxes contain mesh and shape wherever
-    // the region is attached, up to `max_origin`. Error: a box that is out of range then.
+    // the region is attached, up to `max_origin`. Errors: a box that is out of range then; cancelled.
     [[nodiscard]] Result<void> place(double max_origin, Vector<Obb>& boxes, Vector<std::uint32_t>& layers,
-                                     Vector<RegionData::Item>& items);
-    // Moves all the rest to the region, which has `item_count` objects.
-    void finish(RegionData& data, std::size_t item_count, Executor& executor);
+                                     Vector<RegionData::Item>& items, detail::StopSignal& stop);
+    // Moves all the rest to the region, which has `item_count` objects. False: stopped.
+    [[nodiscard]] bool finish(RegionData& data, std::size_t item_count, detail::StopSignal& stop, Executor& executor);
 
   private:
     struct Added {

@@ -190,7 +190,7 @@ void ShapeContacts::compute(Touch& touch, const Surroundings& around, Worker& wo
     const convex::Beside beside{worker.placed[0], worker.placed[1]};
     if (convex)
         convex::push_out_of_union(placed_a, placed_b, {beside, a, b, worker.numbers[0], worker.numbers[1]}, options,
-                                  worker.found, worker.memory);
+                                  worker.found, worker.memory, touch.cache);
     else
         convex::contact_manifolds(placed_a, placed_b, beside, options, worker.found, &touch.cache);
     convex::track(worker.found.all(), worker.pair_points);

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <crofton/convex/push_out_of_union.hpp>
 #include <crofton/convex/query.hpp>
 #include <crofton/convex/slides.hpp>
+#include <crofton/world/object_manifold.hpp>
 #include <cstddef>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -134,73 +136,95 @@ std::optional<ClosestObject> World::closest(const convex::Shape& probe, const Ri
     });
 }
 
-Result<std::optional<ShapeHit>> World::cast(const convex::Shape& probe, const RigidTransform& pose,
-                                            const convex::Motion& motion, const convex::CastOptions& options,
-                                            const QueryFilter& filter) const {
-    if (auto good = check(probe, pose); !good) return good.error();
-    // Bad motions and options are told also where nothing is near.
-    static const convex::Shape kPoint = *convex::Shape::sphere(0.0);
-    const RigidTransform far{glm::dmat3(1.0), glm::dvec3(1e15)};
-    if (auto good = convex::cast({probe, pose}, motion, {kPoint, far}, {}, options); !good) return good.error();
-    const State& s = *state_;
-    const auto hit_of = [&](std::uint32_t id, const convex::Impact& impact) {
-        const ObjectRef ref = s.ref_of(id);
-        return ShapeHit{ref.object,
-                        ref.user,
-                        impact.time,
-                        impact.normal,
-                        impact.on_b,
-                        impact.part_b.triangle,
-                        impact.result == convex::CastResult::hit,
-                        impact.distance};
-    };
-    const auto find_first = [&](std::span<const convex::ShapeAtPose> touched) {
-        std::optional<ShapeHit> first;
+// A shape that moves among the objects.
+struct World::State::Sweep {
+    const State& world;
+    convex::ShapeAtPose shape;
+    const convex::Motion& motion;
+    const convex::CastOptions& options;
+    const QueryFilter& filter;
+
+    [[nodiscard]] Result<void> check() const {
+        if (auto good = crofton::check(shape.shape, shape.pose); !good) return good;
+        // Bad motions and options are told also where nothing is near.
+        static const convex::Shape kPoint = *convex::Shape::sphere(0.0);
+        const RigidTransform far{glm::dmat3(1.0), glm::dvec3(1e15)};
+        if (auto good = convex::cast(shape, motion, {kPoint, far}, {}, options); !good) return good.error();
+        return {};
+    }
+    [[nodiscard]] ShapeHit hit_of(std::uint32_t id, const world::QueryShape& stand,
+                                  const convex::Impact& impact) const {
+        const ObjectRef ref = world.ref_of(id);
+        ShapeHit hit{ref.object, ref.user, impact.time, impact.normal, impact.on_b};
+        hit.triangle = world::triangle_of(stand.shape, impact.part_b);
+        hit.child = impact.part_b.child;
+        hit.resolved = impact.result == convex::CastResult::hit;
+        hit.distance = impact.distance;
+        return hit;
+    }
+    // Calls visit(id, stand, impact) for each object that the shape may meet first, in no order. The visitor returns
+    // the time up to which others are of interest.
+    template <class Visit>
+    void visit_met(std::span<const convex::ShapeAtPose> touched, Visit visit) const {
         convex::CastOptions rest = options;
-        const Aabb swept = swept_bounds(probe, pose, motion, options.duration, options.tolerance);
-        s.visit_near(swept, 0.0, filter, [&](std::uint32_t id) {
-            const world::QueryShape stand = s.query_shape_of(id);
+        const Aabb swept = swept_bounds(shape.shape, shape.pose, motion, options.duration, options.tolerance);
+        world.visit_near(swept, 0.0, filter, [&](std::uint32_t id) {
+            const world::QueryShape stand = world.query_shape_of(id);
             if (!stand.pose) return 0.0;
-            const auto impact =
-                convex::cast({probe, pose}, motion, {stand.shape, *stand.pose}, {}, rest, {{}, touched});
-            if (!impact || impact->result == convex::CastResult::miss) return 0.0;
-            if (first && impact->time > first->time) return 0.0;
-            if (first && impact->time == first->time && id > first->object.index) return 0.0;
-            first = hit_of(id, *impact);
-            rest.early_out = impact->time;
+            const auto impact = convex::cast(shape, motion, stand.placed(), {}, rest, {{}, touched});
+            if (impact && impact->result != convex::CastResult::miss) rest.early_out = visit(id, stand, *impact);
             return 0.0;
         });
+    }
+    [[nodiscard]] std::optional<ShapeHit> find_first(std::span<const convex::ShapeAtPose> touched) const {
+        std::optional<ShapeHit> first;
+        visit_met(touched, [&](std::uint32_t id, const world::QueryShape& stand, const convex::Impact& impact) {
+            if (!first || impact.time < first->time || (impact.time == first->time && id < first->object.index))
+                first = hit_of(id, stand, impact);
+            return first->time;
+        });
         return first;
-    };
+    }
     // Objects that the shape touches at one time are one surface, to slide on or to land on.
-    const auto visit_touched = [&](const RigidTransform& there, const auto& visit) {
+    template <class Visit>
+    void visit_touched(const RigidTransform& there, Visit visit) const {
         convex::CastOptions now = options;
         now.duration = 0.0;
         now.ignore_initial_overlaps = false;
-        s.visit_near(bounds_of(probe, there), options.tolerance, filter, [&](std::uint32_t id) {
-            const world::QueryShape stand = s.query_shape_of(id);
+        world.visit_near(bounds_of(shape.shape, there), options.tolerance, filter, [&](std::uint32_t id) {
+            const world::QueryShape stand = world.query_shape_of(id);
             if (!stand.pose) return options.tolerance;
-            const auto impact = convex::cast({probe, there}, {}, {stand.shape, *stand.pose}, {}, now);
+            const auto impact = convex::cast({shape.shape, there}, {}, stand.placed(), {}, now);
             if (impact && impact->result == convex::CastResult::hit) visit(id, stand, *impact);
             return options.tolerance;
         });
-    };
-    std::optional<ShapeHit> first = find_first({});
+    }
+    void find_touched_at_start(TouchedObjects& touched) const {
+        visit_touched(shape.pose, [&](std::uint32_t id, const world::QueryShape& stand, const convex::Impact&) {
+            touched.add(id, stand.shape, *stand.pose);
+        });
+    }
+};
+
+Result<std::optional<ShapeHit>> World::cast(const convex::Shape& probe, const RigidTransform& pose,
+                                            const convex::Motion& motion, const convex::CastOptions& options,
+                                            const QueryFilter& filter) const {
+    const State::Sweep sweep{*state_, {probe, pose}, motion, options, filter};
+    if (auto good = sweep.check(); !good) return good.error();
+    std::optional<ShapeHit> first = sweep.find_first({});
     const auto overlaps = [&] { return first->time == 0.0 && first->distance <= -options.tolerance; };
     if (!first || overlaps()) return first;
     TouchedObjects at_start;
-    visit_touched(pose, [&](std::uint32_t id, const world::QueryShape& stand, const convex::Impact&) {
-        at_start.add(id, stand.shape, *stand.pose);
-    });
+    sweep.find_touched_at_start(at_start);
     const bool slides = convex::slides_along({probe, pose}, motion, at_start.placed(), options);
-    if (at_start.has_others(first->object.index)) first = find_first(at_start.placed());
+    if (at_start.has_others(first->object.index)) first = sweep.find_first(at_start.placed());
     if (!first || !first->resolved) return first;
     if (first->time == 0.0 && at_start.has_others(first->object.index)) {
         std::optional<ShapeHit> told;
-        visit_touched(pose, [&](std::uint32_t id, const world::QueryShape&, const convex::Impact& touch) {
+        sweep.visit_touched(pose, [&](std::uint32_t id, const world::QueryShape& stand, const convex::Impact& touch) {
             if (is_same(touch, *first, 1e-3 * options.tolerance) && !(told && told->object == first->object) &&
                 (id == first->object.index || !told || touch.distance < told->distance))
-                told = hit_of(id, touch);
+                told = sweep.hit_of(id, stand, touch);
         });
         return told ? told : first;
     }
@@ -209,7 +233,7 @@ Result<std::optional<ShapeHit>> World::cast(const convex::Shape& probe, const Ri
     std::optional<ShapeHit> nearest;
     TouchedObjects at_hit;
     const RigidTransform there = convex::moved(pose, motion, first->time);
-    visit_touched(there, [&](std::uint32_t id, const world::QueryShape& stand, const convex::Impact& touch) {
+    sweep.visit_touched(there, [&](std::uint32_t id, const world::QueryShape& stand, const convex::Impact& touch) {
         at_hit.add(id, stand.shape, *stand.pose);
         if (!is_in_the_way(touch, {probe, there}, motion, options.duration - first->time)) return;
         // What it slides on may seem to come nearer, within rounding.
@@ -217,7 +241,7 @@ Result<std::optional<ShapeHit>> World::cast(const convex::Shape& probe, const Ri
         if (!is_nearer(touch, *first, 1e-3 * options.tolerance)) return;
         if (nearest && touch.distance > nearest->distance) return;
         if (nearest && touch.distance == nearest->distance && id > nearest->object.index) return;
-        nearest = hit_of(id, touch);
+        nearest = sweep.hit_of(id, stand, touch);
     });
     if (nearest) {
         nearest->time = first->time;
@@ -234,6 +258,85 @@ Result<std::optional<ShapeHit>> World::cast(const convex::Shape& probe, const Ri
         first->distance = touch->distance;
     }
     return first;
+}
+
+Result<void> World::cast_all(const convex::Shape& probe, const RigidTransform& pose, const convex::Motion& motion,
+                             const convex::CastOptions& options, Vector<ShapeHit>& hits,
+                             const QueryFilter& filter) const {
+    hits.clear();
+    const State::Sweep sweep{*state_, {probe, pose}, motion, options, filter};
+    if (auto good = sweep.check(); !good) return good;
+    TouchedObjects at_start;
+    sweep.find_touched_at_start(at_start);
+    sweep.visit_met(at_start.placed(),
+                    [&](std::uint32_t id, const world::QueryShape& stand, const convex::Impact& impact) {
+                        hits.push_back(sweep.hit_of(id, stand, impact));
+                        return options.early_out;
+                    });
+    std::sort(hits.begin(), hits.end(), [](const ShapeHit& a, const ShapeHit& b) {
+        return a.time != b.time ? a.time < b.time : a.object.index < b.object.index;
+    });
+    return {};
+}
+
+Result<void> World::contact_manifolds(const convex::Shape& probe, const RigidTransform& pose,
+                                      const convex::ManifoldOptions& options, Vector<ObjectManifold>& found,
+                                      const QueryFilter& filter) const {
+    found.clear();
+    if (auto good = check(probe, pose); !good) return good;
+    if (!(options.margin >= 0.0 && options.margin <= kMaxCoordinate))
+        return fail(ErrorCode::out_of_range, kNoItem, "world: a margin of contacts must be finite and at least 0");
+    if (options.max_points < 1 || options.max_points > 8)
+        return fail(ErrorCode::out_of_range, kNoItem, "world: a manifold has 1 to 8 points");
+    struct Near {
+        std::uint32_t id;
+        world::QueryShape stand;
+    };
+    const State& s = *state_;
+    Vector<Near> near;
+    const auto wider = [&](const Obb& box, const convex::Shape& shape, const RigidTransform& stand) {
+        return options.margin > 0.0 ? world::box_around(box, shape, stand, 0.5 * options.margin) : box;
+    };
+    const Obb box = wider(world::box_around(probe, pose), probe, pose);
+    s.visit_near(bounds_of(probe, pose), options.margin, filter, [&](std::uint32_t id) {
+        world::QueryShape stand = s.query_shape_of(id);
+        if (!stand.pose) return options.margin;
+        // Others that the tree may visit, as it is built now, must not take part as neighbours.
+        const bool is_near =
+            !stand.shape.is_bounded() || collide::intersects(box, wider(s.box_of_object(id), stand.shape, *stand.pose));
+        if (is_near) near.push_back({id, std::move(stand)});
+        return options.margin;
+    });
+    std::sort(near.begin(), near.end(), [](const Near& a, const Near& b) { return a.id < b.id; });
+    const convex::ShapeAtPose placed{probe, pose};
+    convex::Manifolds manifolds;
+    convex::PairMemory memory;
+    Vector<convex::ShapeAtPose> beside;
+    Vector<std::uint32_t> numbers;
+    for (const Near& object : near) {
+        const convex::ShapeAtPose other = object.stand.placed();
+        convex::contact_manifolds(placed, other, options, manifolds);
+        if (manifolds.all().empty()) continue;
+        beside.clear();
+        numbers.clear();
+        for (const Near& neighbor : near) {
+            if (neighbor.id == object.id) continue;
+            beside.push_back(neighbor.stand.placed());
+            numbers.push_back(neighbor.id);
+        }
+        if (probe.is_convex() && other.shape.is_convex())
+            convex::push_out_of_union(placed, other, {{{}, beside}, kNoIndex, object.id, {}, numbers}, options,
+                                      manifolds, memory);
+        else
+            convex::contact_manifolds(placed, other, {{}, beside}, options, manifolds);
+        const ObjectRef ref = s.ref_of(object.id);
+        const std::size_t first = found.size();
+        for (const convex::Manifold& manifold : manifolds.all()) found.push_back({ref.object, ref.user, manifold});
+        std::stable_sort(
+            found.begin() + static_cast<std::ptrdiff_t>(first), found.end(),
+            [](const ObjectManifold& a, const ObjectManifold& b) { return a.manifold.depth > b.manifold.depth; });
+    }
+    return {};
 }
 
 }  // namespace crofton

@@ -216,7 +216,7 @@ Result<void> World::State::apply_scene(Executor& executor) {
     }
     auto scaled = update_shapes();
     pair_changes.all_contacts |= shapes.update(scene, executor);
-    scene_changed |= mesh_clusters.update(scene);
+    scene_changed |= mesh_clusters.update(scene, executor);
     return scaled;
 }
 

@@ -194,8 +194,7 @@ struct World::State {
     [[nodiscard]] world::QueryShape query_shape_of(std::uint32_t object) const;
     // Answer for an object by its shape, as overlap() and closest() say. The distance is infinite beyond `limit`.
     [[nodiscard]] bool overlaps(const convex::ShapeAtPose& shape, std::uint32_t object) const;
-    [[nodiscard]] collide::Distance gap_to_shape(const convex::ShapeAtPose& shape, std::uint32_t object,
-                                                 double limit) const;
+    [[nodiscard]] world::Gap gap_to_shape(const convex::ShapeAtPose& shape, std::uint32_t object, double limit) const;
     // Returns a point of the shape that lies inside an object's closed mesh, if contacts count that as touching.
     [[nodiscard]] std::optional<glm::dvec3> point_inside(const convex::ShapeAtPose& shape, std::uint32_t object) const;
     // Returns the object of an index in an answer, the World's own or a region's.
@@ -211,10 +210,11 @@ struct World::State {
     void visit_near(const Aabb& bounds, double distance, const QueryFilter& filter, collide::NearVisitor visit) const;
     void visit_bounded_near(const Aabb& bounds, double distance, std::uint32_t layers,
                             collide::NearVisitor visit) const;
+    struct Sweep;
     template <class Shape>
     void overlap(const Shape& shape, Vector<ObjectRef>& found, const QueryFilter& filter) const;
     // How far an object is, and the nearest points: first the shape's, then the object's.
-    using GapTo = FunctionRef<collide::Distance(std::uint32_t object, double limit)>;
+    using GapTo = FunctionRef<world::Gap(std::uint32_t object, double limit)>;
     // `bounds` are around the shape.
     [[nodiscard]] std::optional<ClosestObject> closest(const Aabb& bounds, double max_distance,
                                                        const QueryFilter& filter, GapTo gap_to_object) const;

@@ -231,7 +231,7 @@ typedef struct crofton_region_object {
 typedef struct crofton_region_options {
     size_t size;
     uint64_t max_objects; /* 2^24; a region with more is refused */
-    /* Or NULL. Return 1 to stop (CROFTON_CANCELLED). It is not called while the tree is built. */
+    /* Or NULL. Return 1 to stop (CROFTON_CANCELLED). Called every few milliseconds. */
     int (*should_stop)(void* user, double share_done);
     void* stop_user;
     const crofton_mesh_data* meshes; /* that the objects share; or NULL */
@@ -242,6 +242,15 @@ typedef struct crofton_region_options {
     double max_origin;
 } crofton_region_options;
 
+/* What a region holds. */
+typedef struct crofton_region_info {
+    size_t size;
+    uint64_t object_count;
+    uint64_t bytes;        /* of memory; occluders and clusters are not counted */
+    double min[3], max[3]; /* around all objects, relative to the origin; without objects min is infinite, max is its
+                              negative */
+} crofton_region_info;
+
 CROFTON_API crofton_region_object crofton_default_region_object(void);
 CROFTON_API crofton_region_options crofton_default_region_options(void);
 /* Prepares a region; call it on any thread. `options`, `jobs` or NULL. If an object or a mesh is refused,
@@ -251,6 +260,15 @@ CROFTON_API crofton_status crofton_region_prepare(const crofton_region_object* o
                                                   crofton_region** region);
 /* You may destroy a region at any time: a world keeps what it needs. */
 CROFTON_API crofton_status crofton_region_destroy(crofton_region* region);
+/* Fills a struct whose `size` is set. */
+CROFTON_API crofton_status crofton_region_get_info(const crofton_region* region, crofton_region_info* info);
+/* Sets *mesh to the place of an object's mesh among the region's, or to CROFTON_NONE if it has none.
+ * CROFTON_OUT_OF_RANGE: there is no such object. */
+CROFTON_API crofton_status crofton_region_mesh_of(const crofton_region* region, uint32_t place, uint32_t* mesh);
+/* Returns the clusters of a mesh, to which a view's triangles refer; valid as long as `region`. CROFTON_EMPTY: there is
+ * no such mesh, or it has no clusters. */
+CROFTON_API crofton_status crofton_region_clusters_of(const crofton_region* region, uint32_t mesh,
+                                                      crofton_clusters* clusters);
 /* Attaches a region: from the next update on, answers contain its objects, moved by `origin`. */
 CROFTON_API crofton_status crofton_world_attach(crofton_world* world, const crofton_region* region,
                                                 const double origin[3], crofton_attached_region* attached);
@@ -296,6 +314,8 @@ typedef struct crofton_closest_object {
     uint64_t user;
     double distance;
     double on_shape[3], on_object[3]; /* nearest points; if they overlap, any common point */
+    uint32_t triangle;                /* at on_object, of the object's mesh or its shape's surface, or CROFTON_NONE */
+    uint32_t child;                   /* of a compound shape; else 0 */
 } crofton_closest_object;
 
 typedef struct crofton_object_pair {
@@ -309,8 +329,8 @@ typedef enum crofton_contact_phase {
 } crofton_contact_phase;
 
 /* Two objects that touch, or that have ended touching in this update; these have only the handles, which may be
- * stale. Shapes also touch up to the contact margin, and keep the face and points of the last update while no others
- * are deeper by 1e-4 of the pair's size. A pair that rests is not computed again. */
+ * stale. Shapes also touch up to the contact margin. Convex ones keep the face and points of the last update while they
+ * are as good within 1e-4 of the pair's size. A pair that rests is not computed again. */
 typedef struct crofton_object_contact {
     crofton_object_ref first, second; /* ordered as in crofton_object_pair */
     uint8_t phase;                    /* a crofton_contact_phase */
@@ -333,10 +353,21 @@ typedef struct crofton_shape_hit {
     double time;
     double normal[3];  /* unit, from the shape to the object */
     double point[3];   /* on the object's surface */
-    uint32_t triangle; /* of a surface */
+    uint32_t triangle; /* of the object's mesh or its shape's surface, or CROFTON_NONE */
     uint32_t result;   /* a crofton_cast_result; unresolved: it meets nothing before `time` */
     double distance;   /* gap at that time; negative: how deep they overlap, from the start */
+    uint32_t child;    /* of a compound shape; else 0 */
 } crofton_shape_hit;
+
+/* Where a shape touches an object: the points of one direction. */
+typedef struct crofton_object_manifold {
+    crofton_object object;
+    uint64_t user;
+    double normal[3]; /* unit, from the shape to the object */
+    double depth;     /* of the deepest point; negative: a gap */
+    uint32_t point_count;
+    crofton_shape_point points[CROFTON_MAX_MANIFOLD_POINTS];
+} crofton_object_manifold;
 
 /* An object's data; box and transform as of the last update. */
 typedef struct crofton_object_info {
@@ -401,11 +432,15 @@ CROFTON_API crofton_status crofton_world_raycast_any(const crofton_world* world,
 
 CROFTON_API crofton_status crofton_found_create(crofton_found** found);
 CROFTON_API crofton_status crofton_found_destroy(crofton_found* found);
-/* Return what the last query with `found` has found; valid until the next. */
+/* Return what the last query with `found` has found; valid until the next. Shape hits are hits[0].size bytes apart. */
 CROFTON_API crofton_status crofton_found_objects(const crofton_found* found, const crofton_object_ref** objects,
                                                  size_t* count);
 CROFTON_API crofton_status crofton_found_hits(const crofton_found* found, const crofton_object_hit** hits,
                                               size_t* count);
+CROFTON_API crofton_status crofton_found_shape_hits(const crofton_found* found, const crofton_shape_hit** hits,
+                                                    size_t* count);
+CROFTON_API crofton_status crofton_found_manifolds(const crofton_found* found,
+                                                   const crofton_object_manifold** manifolds, size_t* count);
 
 /* Lists the nearest hit of each object that the ray hits, in order of t, then of index. Read it by crofton_found_hits.
  */
@@ -434,6 +469,17 @@ CROFTON_API crofton_status crofton_world_contacts(const crofton_world* world, co
 CROFTON_API crofton_status crofton_world_cast(const crofton_world* world, const crofton_placed* probe,
                                               const crofton_motion* motion, const crofton_cast_options* options,
                                               const crofton_query_filter* filter, crofton_shape_hit* hit);
+/* Lists the first hit of each object that the moving shape meets, in order of time, then of index. Read it by
+ * crofton_found_shape_hits. */
+CROFTON_API crofton_status crofton_world_cast_all(const crofton_world* world, const crofton_placed* probe,
+                                                  const crofton_motion* motion, const crofton_cast_options* options,
+                                                  const crofton_query_filter* filter, crofton_found* found);
+/* Lists where a shape, which need not be an object, touches the objects, in order of index; of one object the deepest
+ * manifold comes first. Objects that lie flush push as their union does. Read it by crofton_found_manifolds. `options`
+ * or NULL. CROFTON_UNSUPPORTED: a half-space. */
+CROFTON_API crofton_status crofton_world_manifolds(const crofton_world* world, const crofton_placed* probe,
+                                                   const crofton_manifold_options* options,
+                                                   const crofton_query_filter* filter, crofton_found* found);
 
 /* Occluders: geometry by which a mesh's objects hide others. Guide: docs/occlude.md. */
 

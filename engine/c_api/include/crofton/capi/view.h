@@ -164,8 +164,9 @@ CROFTON_API crofton_status crofton_view_result_destroy(crofton_view_result* resu
 
 /* Returns the indices of the objects, items or boxes; valid until the result's next view.
  *
- * For one view in tree order, the first *inside_count lie inside its volume. For one view in ascending order, *verdicts
- * has a crofton_verdict for each. Otherwise these are 0 and NULL. `verdicts`, `inside_count` or NULL. */
+ * For one view, *inside_count is how many lie inside its volume. In tree order they are the first; in ascending order,
+ * *verdicts has a crofton_verdict for each, else it is NULL. For several views both are 0 and NULL. `verdicts`,
+ * `inside_count` or NULL. */
 CROFTON_API crofton_status crofton_view_result_ids(const crofton_view_result* result, const uint32_t** ids,
                                                    size_t* count, const uint8_t** verdicts, size_t* inside_count);
 /* Fills a struct whose `size` is set with the data of view number `view`. CROFTON_OUT_OF_RANGE: there are fewer views.

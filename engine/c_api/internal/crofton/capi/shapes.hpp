@@ -97,6 +97,8 @@ class PlacedPair {
 
 // Both may be null: a shape that rests, a time of 1.
 [[nodiscard]] convex::Motion to_motion(const crofton_motion* motion);
+[[nodiscard]] crofton_status to_manifold_options(const crofton_manifold_options* options, const char* function,
+                                                 convex::ManifoldOptions& result);
 [[nodiscard]] crofton_status to_cast_options(const crofton_cast_options* options, const char* function,
                                              convex::CastOptions& result);
 

@@ -10,7 +10,7 @@ namespace crofton::render {
 // One pass over a picture of kColorFormat. The picture ends in SHADER_READ_ONLY_OPTIMAL, visible to following transfers
 // and fragment shaders. A picture that is kept must be in that layout before.
 struct PassDescription {
-    bool keep_color = false;                      // false: cleared
+    VkAttachmentLoadOp color = VK_ATTACHMENT_LOAD_OP_CLEAR;  // DONT_CARE: all pixels are drawn
     VkFormat depth_format = VK_FORMAT_UNDEFINED;  // cleared, and discarded after the pass; UNDEFINED: no depth
 };
 [[nodiscard]] Result<VkRenderPass> create_render_pass(const VulkanContext& context, const PassDescription& description);

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* For tools that prepare levels: triangulate polygons, bake scenes into files, open visible sets.
+/* Triangulates polygons, bakes scenes into files, opens baked scenes, regions and visible sets.
  * Link crofton_bake as well as crofton. */
 #ifndef CROFTON_CAPI_BAKE_H
 #define CROFTON_CAPI_BAKE_H
+#include <crofton/capi/crofton.h>
 #include <crofton/capi/scene.h>
 
 #ifdef __cplusplus
@@ -104,6 +105,52 @@ CROFTON_API crofton_status crofton_baked_scene_instances(const crofton_baked_sce
 CROFTON_API crofton_status crofton_baked_scene_nodes(const crofton_baked_scene* baked, const crofton_baked_node** nodes,
                                                      size_t* count);
 
+/* Regions of a world, from baked files. Guide: docs/large_worlds.md. */
+
+typedef struct crofton_baked_region_options {
+    size_t size;
+    uint32_t triangles; /* 1: rays, probes and contacts test the triangles, for which a tree is built over each mesh; 0:
+                           they test the meshes' boxes */
+    uint32_t occluders; /* 1: objects hide others by the occluders of the file; 0: they do not, which saves half of the
+                           time */
+    uint32_t collides_with;  /* all; of all objects */
+    uint32_t trust_contents; /* 0; 1: does not check that the bounds in the file contain the boxes below them. Only for
+                                files of your own: wrong bounds would lose objects later */
+    uint64_t max_objects;    /* 2^24; a region with more is refused */
+    double max_origin; /* 1e9, as in crofton_region_options; for another value the tree of the file is not used, but
+                          built anew */
+} crofton_baked_region_options;
+
+CROFTON_API crofton_baked_region_options crofton_default_baked_region_options(void);
+/* Opens a file that `crofton bake` or crofton_scene_bake wrote, checks all of it, and prepares a region; call it on any
+ * thread. The object at place i is instance i, with the user number i. Meshes have the numbers of the file. Everything
+ * is copied: nothing is read from the file afterwards. `options`, `jobs` or NULL. */
+CROFTON_API crofton_status crofton_baked_region_open(const char* path, const crofton_baked_region_options* options,
+                                                     const crofton_jobs* jobs, crofton_region** region);
+
+/* The index of a world that `crofton bake --regions` has split: a folder with a file for each region. */
+typedef struct crofton_region_index crofton_region_index;
+
+typedef struct crofton_region_file {
+    const char* name;      /* of the file, in the folder of the index */
+    double origin[3];      /* where to attach it */
+    double min[3], max[3]; /* around its objects, relative to the origin */
+    uint64_t objects;
+    uint64_t bytes; /* of the file */
+} crofton_region_file;
+
+/* Reads FOLDER/index.crofton. */
+CROFTON_API crofton_status crofton_region_index_open(const char* folder, crofton_region_index** index);
+CROFTON_API crofton_status crofton_region_index_destroy(crofton_region_index* index);
+/* Returns where the regions are; valid as long as `index`. */
+CROFTON_API crofton_status crofton_region_index_files(const crofton_region_index* index,
+                                                      const crofton_region_file** files, size_t* count);
+/* Does the same as crofton_baked_region_open for the region at a place in the index. CROFTON_PARSE: also for a file
+ * that has another size or other objects than the index says. CROFTON_OUT_OF_RANGE: there is no such place. */
+CROFTON_API crofton_status crofton_region_index_prepare(const crofton_region_index* index, size_t place,
+                                                        const crofton_baked_region_options* options,
+                                                        const crofton_jobs* jobs, crofton_region** region);
+
 /* Potentially visible sets, baked by `crofton pvs --out FILE`. Guide: docs/pvs.md. */
 
 typedef struct crofton_pvs crofton_pvs;
@@ -118,6 +165,8 @@ typedef enum crofton_pvs_mode {
 /* CROFTON_OUT_OF_RANGE: the file has more than 2^30 pairs of a cell and an object, each of which takes a byte while it
  * is opened. */
 CROFTON_API crofton_status crofton_pvs_open(const char* path, crofton_pvs** pvs);
+/* Does the same for a file that lies in memory, as one of an archive does. Copies what it needs. */
+CROFTON_API crofton_status crofton_pvs_read(const uint8_t* bytes, size_t count, crofton_pvs** pvs);
 CROFTON_API crofton_status crofton_pvs_destroy(crofton_pvs* pvs);
 /* Returns the numbers of cells and of objects; either may be NULL. */
 CROFTON_API crofton_status crofton_pvs_counts(const crofton_pvs* pvs, size_t* cells, size_t* objects);

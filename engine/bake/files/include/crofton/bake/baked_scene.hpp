@@ -139,9 +139,11 @@ class BakedScene {
     // be shortened or changed meanwhile: see FileAccess.
     [[nodiscard]] static Result<BakedScene> open(const std::string& path, Executor& executor = serial_executor(),
                                                  const FileOptions& options = {});
-    // Uses a file in memory. The memory starts at a multiple of 64 and outlives this object.
+    // Uses a file in memory. The memory starts at a multiple of 64 and outlives this object. The error is `cancelled` if
+    // the callback asks to stop.
     [[nodiscard]] static Result<BakedScene> from_memory(std::span<const std::byte> file,
-                                                        Executor& executor = serial_executor());
+                                                        Executor& executor = serial_executor(),
+                                                        StopCallback should_stop = nullptr, void* stop_user = nullptr);
 
     [[nodiscard]] std::size_t mesh_count() const { return meshes_.size(); }
     [[nodiscard]] MeshView mesh(scene::MeshId mesh) const;
@@ -151,8 +153,8 @@ class BakedScene {
     // Returns the occluders, or none if the file was baked without them; they can then be found again. Each number is
     // copied from the file and checked. Occluders are not checked to lie within the meshes; the baker must ensure it.
     [[nodiscard]] const std::optional<BakedOccluders>& occluders() const { return occluders_; }
-    // Returns the mesh's clusters; nullptr if it was baked without. They are copied from the file and checked, except
-    // that their boxes are not compared with the triangles.
+    // Returns the mesh's clusters; nullptr if it was baked without. They are copied from the file and checked: each box
+    // contains its triangles.
     [[nodiscard]] const depth::ClusteredMesh* clusters(scene::MeshId mesh) const;
     // Returns the tree over the instances: item i is instance i, with its box and layer mask. You may change the tree.
     [[nodiscard]] boxtree::BoxTree& tree() { return *tree_; }

@@ -4,6 +4,7 @@
 #include <crofton/core/error.hpp>
 #include <crofton/core/executor.hpp>
 #include <crofton/core/memory.hpp>
+#include <crofton/core/stop_signal.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -63,8 +64,10 @@ class Writer {
 class Reader {
   public:
     // Checks everything but what the sections mean: magic, byte order, version, sizes, places, checksums, padding.
-    // Borrows the bytes, which start at a multiple of 64. Errors say what is wrong, and for sections which one.
-    [[nodiscard]] static Result<Reader> open(std::span<const std::byte> file, Executor& executor = serial_executor());
+    // Borrows the bytes, which start at a multiple of 64. Errors say what is wrong, and for sections which one;
+    // cancelled, by the signal.
+    [[nodiscard]] static Result<Reader> open(std::span<const std::byte> file, Executor& executor = serial_executor(),
+                                             detail::StopSignal* stop = nullptr);
 
     // Errors: no such section, elements of another size (parse); another version (unsupported). T is plain data aligned
     // to 64 bytes at most.

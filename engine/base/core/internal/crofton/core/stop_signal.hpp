@@ -3,10 +3,15 @@
 #pragma once
 #include <atomic>
 #include <chrono>
+#include <crofton/core/error.hpp>
 #include <crofton/core/stop.hpp>
 #include <cstdint>
 
 namespace crofton::detail {
+
+[[nodiscard]] inline Error cancelled(const char* whose) {
+    return fail(ErrorCode::cancelled, kNoItem, {whose, ": the callback asked to stop"});
+}
 
 // Asks the caller's callback from any of the threads that work, never from two at once, and some hundred times a second
 // at most. Once it has returned true it is not asked again.
@@ -41,6 +46,18 @@ class StopSignal {
     std::atomic<bool> raised_{false};
     std::atomic<std::int64_t> next_{0};
     std::atomic_flag asking_ = ATOMIC_FLAG_INIT;
+};
+
+// A part of a long operation, which asks the whole's callback: from one share of the whole to another.
+struct PartOfStop {
+    StopCallback should_stop;  // nullptr: it is not asked
+    void* user;
+    double from, to;
+
+    [[nodiscard]] static bool ask(void* part, double share_done) {
+        const PartOfStop& its = *static_cast<const PartOfStop*>(part);
+        return its.should_stop != nullptr && its.should_stop(its.user, its.from + (its.to - its.from) * share_done);
+    }
 };
 
 }  // namespace crofton::detail

@@ -3,6 +3,7 @@
 #pragma once
 #include <crofton/core/executor.hpp>
 #include <crofton/core/memory.hpp>
+#include <crofton/core/stop.hpp>
 #include <crofton/geometry/box.hpp>
 #include <crofton/measure/measure.hpp>
 #include <cstddef>
@@ -34,6 +35,9 @@ struct BuildOptions {
     // Takes memory for so many items more, and leaves room in the nodes above leaves, so that the first insertions copy
     // no arrays and split few leaves.
     std::size_t room = 0;
+    // Ends the build with the error `cancelled`. It is asked every few thousand items.
+    StopCallback should_stop = nullptr;
+    void* stop_user = nullptr;
 };
 
 // How much deserialise() may trust its input. `contents`: a checksum has shown that serialise() wrote these bytes.
@@ -94,8 +98,9 @@ class BoxTree {
     // last two refits count as always moving (BuildOptions).
     bool rebuild_step(std::size_t budget);
 
-    // Checks all invariants: links, counts, slots, bounds. Errors name the node, leaf or item.
-    [[nodiscard]] Result<void> validate() const;
+    // Checks all invariants: links, counts, slots, bounds. Errors name the node, leaf or item; cancelled, by the
+    // callback.
+    [[nodiscard]] Result<void> validate(StopCallback should_stop = nullptr, void* stop_user = nullptr) const;
 
     // Returns bytes from which deserialise() makes an equal tree, on machines of the same byte order. Errors: damaged
     // bytes.

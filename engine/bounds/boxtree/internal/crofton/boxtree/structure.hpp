@@ -6,6 +6,7 @@
 #include <crofton/boxtree/items.hpp>
 #include <crofton/boxtree/layout.hpp>
 #include <crofton/core/growing_vector.hpp>
+#include <crofton/core/stop_signal.hpp>
 #include <crofton/measure/measure.hpp>
 #include <span>
 
@@ -126,6 +127,6 @@ class Structure {
 };
 
 // Checks every invariant of a structure. Errors name the node, leaf or item.
-[[nodiscard]] Result<void> validate(const Structure& structure, Trust trust);
+[[nodiscard]] Result<void> validate(const Structure& structure, Trust trust, detail::StopSignal* stop = nullptr);
 
 }  // namespace crofton::boxtree

@@ -214,6 +214,8 @@ struct ClosestObject {
     std::uint64_t user = 0;
     double distance = 0.0;
     glm::dvec3 on_shape{0.0}, on_object{0.0};  // a nearest point of each; if they overlap, any common point
+    std::uint32_t triangle = kNoTriangle;      // of the object's mesh, or of the shape's surface, at on_object
+    std::uint32_t child = 0;                   // which child, if the object's shape is a compound (convex::PartId)
 };
 
 struct ObjectPair {
@@ -226,8 +228,9 @@ enum class ContactPhase : std::uint8_t { began, stayed, ended };
 // stale. A contact goes on if its objects gain or lose shapes. All points are valid until the next update.
 //
 // Two shapes also touch within WorldOptions::contact_margin. A point keeps its `memory`, which you may write, while its
-// id stays the same. A pair keeps the face and points of the last update while no others are deeper by 1e-4 of its size
-// (convex::contact_manifold), also where flush neighbours then decide. All else depends on the present objects alone.
+// id stays the same. A pair of convex shapes keeps the face and points of the last update while they are as good within
+// 1e-4 of its size (convex::contact_manifold). So its depth differs by that at most from a new World's, also where
+// flush neighbours decide. All else depends on the present objects alone.
 struct Contact {
     ObjectRef first, second;  // ordered as in ObjectPair; the first is shape a
     ContactPhase phase = ContactPhase::began;
@@ -249,11 +252,12 @@ struct ShapeHit {
     ObjectHandle object;
     std::uint64_t user = 0;
     double time = 0.0;
-    glm::dvec3 normal{0.0};      // unit, from the shape to the object
-    glm::dvec3 point{0.0};       // on the object's surface
-    std::uint32_t triangle = 0;  // of a surface
-    bool resolved = true;        // false: the shape meets nothing up to `time`; later contacts are unknown
-    double distance = 0.0;       // the gap at `time`; negative: the depth by which they overlapped at the start
+    glm::dvec3 normal{0.0};                // unit, from the shape to the object
+    glm::dvec3 point{0.0};                 // on the object's surface
+    std::uint32_t triangle = kNoTriangle;  // of the object's mesh, or of the shape's surface
+    bool resolved = true;                  // false: the shape meets nothing up to `time`; later contacts are unknown
+    double distance = 0.0;    // the gap at `time`; negative: the depth by which they overlapped at the start
+    std::uint32_t child = 0;  // which child, if the object's shape is a compound (convex::PartId)
 };
 
 }  // namespace crofton

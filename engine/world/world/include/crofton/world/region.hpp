@@ -66,8 +66,8 @@ class Region {
     //
     // Error: what World::add would refuse, with `item` the object's place; what World::add_mesh or set_occluders would
     // refuse, with `item` the mesh's place; unsupported: a shape without bounds; out_of_range: more than max_objects;
-    // cancelled: should_stop has returned true. It is asked between the steps and while objects are read, and not while
-    // the tree is built, which takes most of the time: 0.5 s for a million objects.
+    // cancelled: should_stop has returned true. It is asked every few milliseconds, except while a single mesh is
+    // prepared.
     [[nodiscard]] static Result<Region> prepare(Strided<RegionObject> objects, const RegionOptions& options = {},
                                                 Executor& executor = serial_executor());
     Region();  // without objects

@@ -18,8 +18,11 @@ namespace crofton {
 namespace convex {
 class Shape;
 struct CastOptions;
+struct ManifoldOptions;
 struct Motion;
 }  // namespace convex
+
+struct ObjectManifold;  // crofton/world/object_manifold.hpp
 
 namespace world {
 class RegionSolids;
@@ -153,7 +156,8 @@ class World {
     Result<void> set_occludes(ObjectHandle object, bool occludes);  // as ObjectDescription; of an object with a mesh
 
     // Returns the clusters of a mesh with MeshDescription::clusters, as of the last update; nullptr for other meshes.
-    // Permute the index buffer that you draw by its triangle_order(). It reads the World's positions: call keep_copy()
+    // Permute the index buffer that you draw by its triangle_order(). Both stay while the mesh deforms (set_vertices);
+    // replace_mesh() cuts anew. It reads the World's positions: call keep_copy()
     // of a copy before the mesh changes or is removed.
     [[nodiscard]] const depth::ClusteredMesh* clusters_of(MeshHandle mesh) const;
 
@@ -270,6 +274,25 @@ class World {
     [[nodiscard]] Result<std::optional<ShapeHit>> cast(const convex::Shape& probe, const RigidTransform& pose,
                                                        const convex::Motion& motion, const convex::CastOptions& options,
                                                        const QueryFilter& filter = {}) const;
+    // Lists the first hit of each object that the moving shape meets, in order of time, then of index.
+    //
+    // Each is that of convex::cast with the object; objects that the cast begins in contact with are neighbours, so
+    // that a shape that slides on flush objects does not meet their sides. An object is not met a second time.
+    // CastOptions::early_out leaves out later hits. Errors: as cast.
+    Result<void> cast_all(const convex::Shape& probe, const RigidTransform& pose, const convex::Motion& motion,
+                          const convex::CastOptions& options, Vector<ShapeHit>& hits,
+                          const QueryFilter& filter = {}) const;
+    // Lists where a shape, which need not be an object, touches the objects, and how deep: to push a character out of
+    // walls, to ask whether a thing fits into a place, to find what a blow meets. Ordered by index of the object; of
+    // one object the deepest manifold comes first.
+    //
+    // Each object's manifolds are those of convex::contact_manifolds with its shape, or if it has none, its mesh's
+    // triangles, its sphere or its box, up to `options.margin` away. The other objects near the probe are neighbours
+    // (convex::Beside), so that flush objects push as their union does. A mesh is a surface: a probe that is inside it
+    // and does not reach it has no contact. Allocates. Errors: a half-space; an invalid pose; options out of range.
+    Result<void> contact_manifolds(const convex::Shape& probe, const RigidTransform& pose,
+                                   const convex::ManifoldOptions& options, Vector<ObjectManifold>& found,
+                                   const QueryFilter& filter = {}) const;
     // Returns the object that is nearest to the probe, at most max_distance away; if several are equally near, the one
     // with the lowest index. Tests the same shapes as overlap(): the distance is 0 iff the probe overlaps the object.
     [[nodiscard]] std::optional<ClosestObject> closest(const Sphere& probe, double max_distance,
