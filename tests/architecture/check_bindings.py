@@ -239,7 +239,7 @@ class Rust:
             self.bodies.update((prefix + name, body) for name, body in declared.findall(text))
         for name in re.findall(r"^handle!\((\w+),", crate, re.M):
             self.bodies["crate::" + name] = "index: u32, generation: u32"
-        self.opaque = re.search(r"opaque!\((.*?)\);", self.text)[1].split(", ")
+        self.opaque = ", ".join(re.findall(r"^opaque!\((.*?)\);", self.text, re.M)).split(", ")
         self.constants = dict(re.findall(r"pub const (\w+): \w+ = (\d+);", self.text))
 
     def kind(self, text):

@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <bit>
 #include <crofton/geometry/model_to_clip.hpp>
 #include <functional>
 #include <memory>
@@ -229,6 +230,32 @@ TEST_SUITE("world/picture_view") {
         REQUIRE(world.view({.camera = camera, .picture = depth::PictureView{160, 90}}, seen));
         REQUIRE(world.view(request, casters));
         CHECK(casters.size() == 0);
+    }
+
+    TEST_CASE("what is counted as listed is what triangles() lists, also beside objects without clusters") {
+        World world;
+        const TriangleMesh cube = testing::cube_mesh();
+        const MeshHandle mesh =
+            world.add_mesh({.positions = cube.positions, .indices = cube.indices, .clusters = true}).value();
+        for (int i = 0; i < 3; ++i) {
+            const glm::dvec3 at(4.0 * i - 4.0, 0.0, -10.0);
+            REQUIRE(world.add({.mesh = mesh, .transform = Transform{glm::dmat3(1.0), at}}));
+            REQUIRE(world.add({.bound = Sphere{at + glm::dvec3(0.0, 3.0, 0.0), 1.0}}));
+        }
+        REQUIRE(world.update());
+        ViewResult result;
+        REQUIRE(world.view(
+            {.camera = Camera{}, .picture = depth::PictureView{.width = 160, .height = 90, .samples = 4}}, result));
+        CHECK(result.size() == 6);
+        std::set<std::uint32_t> objects;
+        std::uint64_t triangles = 0;
+        for (const depth::VisibleCluster& cluster : result.triangles()) {
+            objects.insert(cluster.object);
+            triangles += static_cast<std::uint64_t>(std::popcount(cluster.triangles));
+        }
+        CHECK(objects.size() == 3);
+        CHECK(result.picture_statistics().objects_listed == 3);
+        CHECK(result.picture_statistics().triangles_listed == triangles);
     }
 
     TEST_CASE("the triangles that own a pixel are listed, by objects in order, and what is behind walls is not") {

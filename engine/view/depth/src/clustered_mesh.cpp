@@ -111,7 +111,8 @@ Result<ClusteredMesh> ClusteredMesh::cut(std::span<const glm::vec3> positions, s
 
 Result<void> ClusteredMesh::refit(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices) {
     if (indices.size() != std::size_t{3} * triangle_count_)
-        return fail(ErrorCode::invalid_argument, kNoItem, "clusters: the deformed mesh has another number of triangles");
+        return fail(ErrorCode::invalid_argument, kNoItem,
+                    "clusters: the deformed mesh has another number of triangles");
     if (auto checked = check(positions, indices, {}); !checked) return checked;
     Vector<std::uint32_t> order(triangle_order().begin(), triangle_order().end()), ends;
     if (order.empty()) {

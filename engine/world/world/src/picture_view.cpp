@@ -2,6 +2,7 @@
 #include "picture_view.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <crofton/geometry/model_to_clip.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
@@ -100,11 +101,16 @@ void PictureView::find(const ViewRequest& request, const InFrustum& in_frustum, 
                                    executor);
     seen_.assign(ids.size(), 0);
     triangles_.clear();
+    statistics_ = culler_.statistics();
+    statistics_.objects_listed = statistics_.triangles_listed = 0;
     for (const depth::VisibleCluster& cluster : *found) {
         const std::uint32_t place = places_[cluster.object];
+        const bool is_first = seen_[place] == 0;
         seen_[place] = 1;
-        if (objects_[cluster.object].mesh != &unit_cube())
-            triangles_.push_back({ids[place], cluster.cluster, cluster.triangles});
+        if (objects_[cluster.object].mesh == &unit_cube()) continue;
+        statistics_.objects_listed += is_first;
+        statistics_.triangles_listed += static_cast<std::uint64_t>(std::popcount(cluster.triangles));
+        triangles_.push_back({ids[place], cluster.cluster, cluster.triangles});
     }
     ids_.clear();
     verdicts_.clear();

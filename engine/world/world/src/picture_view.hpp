@@ -39,7 +39,7 @@ class PictureView {
     [[nodiscard]] std::span<const std::uint32_t> ids() const { return ids_; }
     [[nodiscard]] std::size_t inside_count() const { return inside_count_; }
     [[nodiscard]] std::span<const cull::Verdict> verdicts() const { return verdicts_; }
-    [[nodiscard]] const depth::DepthStatistics& statistics() const { return culler_.statistics(); }
+    [[nodiscard]] const depth::DepthStatistics& statistics() const { return statistics_; }
 
   private:
     void place_receivers(const PictureView& seen, const ViewMatrix& view, DrawnOf drawn_of);
@@ -51,6 +51,7 @@ class PictureView {
     Vector<std::uint32_t> places_;            // of objects_, in the list of what the frustum sees
     Vector<std::uint8_t> seen_;               // by place
     Vector<depth::VisibleCluster> triangles_;
+    depth::DepthStatistics statistics_;  // without the boxes that stand for objects among what is listed
     Vector<std::uint32_t> ids_;
     Vector<cull::Verdict> verdicts_;
     std::size_t inside_count_ = 0;

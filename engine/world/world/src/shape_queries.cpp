@@ -326,7 +326,7 @@ Result<void> World::contact_manifolds(const convex::Shape& probe, const RigidTra
         }
         if (probe.is_convex() && other.shape.is_convex())
             convex::push_out_of_union(placed, other, {{{}, beside}, kNoIndex, object.id, {}, numbers}, options,
-                                      manifolds, memory);
+                                      manifolds, memory, nullptr);
         else
             convex::contact_manifolds(placed, other, {{}, beside}, options, manifolds);
         const ObjectRef ref = s.ref_of(object.id);

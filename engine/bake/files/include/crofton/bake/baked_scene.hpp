@@ -139,8 +139,8 @@ class BakedScene {
     // be shortened or changed meanwhile: see FileAccess.
     [[nodiscard]] static Result<BakedScene> open(const std::string& path, Executor& executor = serial_executor(),
                                                  const FileOptions& options = {});
-    // Uses a file in memory. The memory starts at a multiple of 64 and outlives this object. The error is `cancelled` if
-    // the callback asks to stop.
+    // Uses a file in memory. The memory starts at a multiple of 64 and outlives this object. The error is `cancelled`
+    // if the callback asks to stop.
     [[nodiscard]] static Result<BakedScene> from_memory(std::span<const std::byte> file,
                                                         Executor& executor = serial_executor(),
                                                         StopCallback should_stop = nullptr, void* stop_user = nullptr);

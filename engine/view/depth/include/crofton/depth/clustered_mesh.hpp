@@ -63,9 +63,9 @@ class ClusteredMesh {
                                                    std::span<const std::uint32_t> indices,
                                                    const ClusterOptions& options = {});
 
-    // Takes the positions that the mesh has deformed into. Its triangles, their order and the clusters stay; their boxes
-    // and shared vertices are found anew, and positions that were lent are lent no more. Takes a fifth of the time of
-    // cut(). Far from the mesh that was cut, clusters may be large, and views then list more of them.
+    // Takes the positions that the mesh has deformed into. Its triangles, their order and the clusters stay; their
+    // boxes and shared vertices are found anew, and positions that were lent are lent no more. Takes a fifth of the
+    // time of cut(). Far from the mesh that was cut, clusters may be large, and views then list more of them.
     //
     // Pass the indices of the mesh that was cut, or, if the order was dropped, the permuted ones. Errors: as cut();
     // another number of indices (invalid_argument). The object is then as it was.

@@ -127,6 +127,8 @@ class ViewResult {
     // whose boxes may be visible.
     [[nodiscard]] bool has_picture() const;
     [[nodiscard]] std::span<const depth::VisibleCluster> triangles() const;
+    // Returns the counts of the picture. Those of what is listed are of triangles(), without objects that have no
+    // clusters.
     [[nodiscard]] depth::DepthStatistics picture_statistics() const;
 
   private:
@@ -243,7 +245,9 @@ struct Contact {
     // If one object has a shape: those of convex::contact_manifold with the other's box, sphere or mesh; if the shape
     // is inside a closed mesh, none.
     std::span<const collide::ContactPoint> points;
-    std::span<const mesh::MeshContact> triangles;       // of two meshes, or a mesh and a box; none if one has a shape
+    // Of two meshes, or a mesh and a box; none if one has a shape. The vertices of a mesh under a scale or shear are
+    // rounded to float.
+    std::span<const mesh::MeshContact> triangles;
     std::span<convex::TrackedPoint> shape_points = {};  // of two shapes
 };
 
