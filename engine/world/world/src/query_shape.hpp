@@ -2,6 +2,7 @@
 // The shapes of queries, and the shapes of objects that they are tested against.
 #pragma once
 #include <algorithm>
+#include <crofton/collide/bound_contacts.hpp>
 #include <crofton/collide/narrow_phase.hpp>
 #include <crofton/convex/query.hpp>
 #include <crofton/world/answers.hpp>

@@ -315,7 +315,9 @@ Result<void> World::contact_manifolds(const convex::Shape& probe, const RigidTra
     Vector<std::uint32_t> numbers;
     for (const Near& object : near) {
         const convex::ShapeAtPose other = object.stand.placed();
-        convex::contact_manifolds(placed, other, options, manifolds);
+        const bool convex = probe.is_convex() && other.shape.is_convex();
+        convex::PairCache cache;  // the union's search begins with what the two alone have found
+        convex::contact_manifolds(placed, other, options, manifolds, convex ? &cache : nullptr);
         if (manifolds.all().empty()) continue;
         beside.clear();
         numbers.clear();
@@ -324,9 +326,9 @@ Result<void> World::contact_manifolds(const convex::Shape& probe, const RigidTra
             beside.push_back(neighbor.stand.placed());
             numbers.push_back(neighbor.id);
         }
-        if (probe.is_convex() && other.shape.is_convex())
+        if (convex)
             convex::push_out_of_union(placed, other, {{{}, beside}, kNoIndex, object.id, {}, numbers}, options,
-                                      manifolds, memory, nullptr);
+                                      manifolds, memory, cache);
         else
             convex::contact_manifolds(placed, other, {{}, beside}, options, manifolds);
         const ObjectRef ref = s.ref_of(object.id);
