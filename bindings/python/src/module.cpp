@@ -24,14 +24,19 @@ void set_threads(unsigned threads) {
 }
 
 // Objects of the library are not pickled, and what has no constructor is made by calls alone. Left to itself, pybind11
-// ends the interpreter for pickle's protocols 0 and 1, and __new__ gives an answer of uninitialised memory.
+// ends the interpreter for pickle's protocols 0 and 1, and __new__ gives an object of uninitialised memory.
 void refuse_copies(const py::module_& module) {
     for (const auto& [key, value] : module.attr("__dict__").cast<py::dict>()) {
         if (!PyType_Check(value.ptr()) || PyExceptionClass_Check(value.ptr())) continue;
         const std::string name = py::str(key);
-        value.attr("__reduce_ex__") = py::cpp_function(
-            [name](const py::object&, int) { raise_type("cannot pickle 'crofton." + name + "' object"); },
-            py::is_method(value));
+        for (const char* const reduce : {"__reduce__", "__reduce_ex__"})
+            value.attr(reduce) =
+                py::cpp_function([name](const py::object&,
+                                        const py::args&) { raise_type("cannot pickle 'crofton." + name + "' object"); },
+                                 py::is_method(value));
+        // Where __new__ alone made an object, pybind11 calls this for its memory, and would then read that.
+        py::detail::get_type_info(reinterpret_cast<PyTypeObject*>(value.ptr()))->operator_new =
+            [](std::size_t) -> void* { raise_type("the object has no value: its __init__ was not called"); };
         // Where there is no py::init, __init__ is the slot of pybind11's base.
         if (Py_TYPE(value.attr("__init__").ptr()) == &PyWrapperDescr_Type)
             value.attr("__new__") = py::cpp_function([name](const py::args&, const py::kwargs&) {
@@ -76,4 +81,12 @@ PYBIND11_MODULE(_crofton, module) {
     bind_world(module);
     bind_pvs(module);
     refuse_copies(module);
+    // Of an argument that pybind11 shares, such as a mesh.
+    py::register_local_exception_translator([](std::exception_ptr thrown) {
+        try {
+            std::rethrow_exception(thrown);
+        } catch (const py::cast_error&) {
+            PyErr_SetString(PyExc_TypeError, "an argument is of another type, or its __init__ was not called");
+        }
+    });
 }

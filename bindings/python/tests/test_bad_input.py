@@ -130,6 +130,37 @@ def test_pickle_and_copy_refuse_by_name(protocol):
             copy.copy(thing)
 
 
+def library_types():
+    return [value for value in vars(crofton._crofton).values()
+            if isinstance(value, type) and not issubclass(value, BaseException)]
+
+
+@pytest.mark.parametrize("type_", library_types(), ids=lambda type_: type_.__name__)
+def test_an_object_that_was_never_initialised_is_a_type_error(type_):
+    with pytest.raises(TypeError):
+        type_.__new__(type_).__reduce__()
+    try:
+        thing = type_.__new__(type_)
+    except TypeError:
+        return  # it has no constructor
+    for name, member in vars(type_).items():
+        if isinstance(member, property):
+            with pytest.raises(TypeError, match="__init__ was not called"):
+                getattr(thing, name)
+        elif not name.startswith("__") and not isinstance(member, staticmethod) and callable(member):
+            with pytest.raises(TypeError):
+                getattr(thing, name)()
+
+
+def test_no_call_reads_an_object_that_was_never_initialised():
+    world, mesh = crofton.World.__new__(crofton.World), crofton.Mesh.__new__(crofton.Mesh)
+    for call in (world.update, lambda: len(world), lambda: world.view(crofton.Camera()),
+                 lambda: crofton.Shape.mesh(mesh), lambda: world.remove(world), lambda: 3 in world,
+                 lambda: crofton.World().view(crofton.Camera.__new__(crofton.Camera))):
+        with pytest.raises(TypeError):
+            call()
+
+
 @pytest.mark.parametrize("answer", [crofton.ShapeHit, crofton.ObjectManifold, crofton.ObjectHit, crofton.Contact, crofton.ViewResult])
 def test_answers_are_made_by_calls_alone(answer):
     for make in (answer, lambda: answer.__new__(answer)):
