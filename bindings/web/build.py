@@ -103,6 +103,7 @@ def build(name, jobs):
         f"-L{prefix}/lib", "-lqhull_r", "-lhwy", "-sMODULARIZE=1", "-sEXPORT_ES6=1", "-sENVIRONMENT=web", "-sFILESYSTEM=0",
         "-sALLOW_MEMORY_GROWTH=1", "-sMAXIMUM_MEMORY=2147483648", "-sINITIAL_MEMORY=16777216", "-sTOTAL_STACK=1048576",
         "-sALLOW_TABLE_GROWTH=1", "-sWASM_BIGINT=1", "-sEXPORTED_RUNTIME_METHODS=addFunction,removeFunction,HEAPU8",
+        "-sBINARYEN_EXTRA_PASSES=-Os",  # After -O2: the package is 1 % smaller.
         f"-sEXPORTED_FUNCTIONS={names}", "--no-entry", "-o", out / f"{name}.js"], log)
 
     # Its bytes are given to it: webpack would look for a file that the package has not.

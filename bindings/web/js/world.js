@@ -401,7 +401,7 @@ export class World extends Owned {
         const [first, count] = this.memory.words.slice(at >> 2, (at >> 2) + 2);
         return Array.from({ length: count }, (_, i) => read(first + size * i));
     }
-    /** Returns the object nearest to a shape, `{ object, user, distance, onShape, onObject }`, no farther than `maxDistance`; or null. */
+    /** Returns the object nearest to a shape, `{ object, user, distance, onShape, onObject, triangle, child }`, no farther than `maxDistance`; or null. */
     closest(shape, maxDistance = Infinity, filter = ALL) {
         const { memory } = this, at = memory.scratch(344), answer = at + 256;
         withFilter(memory, filter, (given) => {

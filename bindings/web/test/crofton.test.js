@@ -362,7 +362,7 @@ for (const build of BUILDS) {
         assert.deepEqual(met({ capsule: { begin: [0, 0, 0], end: [5, 0, 0], radius: 0 } }, 1), [box]);
         assert.deepEqual(met({ box: { center: [0, 10, 0], halfExtents: [9, 2, 9] } }), [mesh]);
         const near = world.closest({ sphere: { center: [2.5, 0, 0], radius: 0.25 } });
-        assert.deepEqual(near, { object: box, user: 2 ** 40 + 7, distance: 1.25, onShape: [2.25, 0, 0], onObject: [1, 0, 0] });
+        assert.deepEqual(near, { object: box, user: 2 ** 40 + 7, distance: 1.25, onShape: [2.25, 0, 0], onObject: [1, 0, 0], triangle: -1, child: 0 });
         assert.equal(world.closest({ sphere: { center: [2.5, 0, 0], radius: 0.25 } }, 1), null);
         assert.equal(world.closest({ sphere: { center: [2.5, 0, 0], radius: 0.25 } }, 9, 2).distance, 1.25);
         assert.equal(world.raycastAny([0, 0, 9], [0, 0, -1]), true);

@@ -248,7 +248,7 @@ for (const build of BUILDS) {
         assert.deepEqual(world.overlap(probe(0.5)).map(({ user }) => user), [0, 1]);
         near(world.closest(probe(4)).distance, 1.5);
         const back = { velocity: [-1, 0, 0], duration: 9 }, hit = world.cast(probe(4), back);
-        assert.deepEqual([hit.object, hit.user, hit.unresolved, hit.triangle], [objects[2], 2, false, 0]);
+        assert.deepEqual([hit.object, hit.user, hit.unresolved, hit.triangle], [objects[2], 2, false, -1]);
         near(hit.time, 1.5, 1e-5);
         near(hit.normal[0], -1, 1e-6);
         assert.equal(world.cast(probe(4), { ...back, duration: 1.4 }), null);
