@@ -180,16 +180,35 @@ fn a_world_answers_probes_of_any_shape() {
     let back = Motion { velocity: [-1.0, 0.0, 0.0], ..Default::default() };
     let options = CastOptions { duration: 9.0, ..Default::default() };
     let hit = world.cast(&at(4.0), &back, &options, ALL_LAYERS).unwrap().unwrap();
-    assert_eq!((hit.object, hit.user, hit.triangle, hit.unresolved), (objects[2], 2, 0, false));
+    assert_eq!((hit.object, hit.user, hit.triangle, hit.unresolved), (objects[2], 2, u32::MAX, false));
     near(hit.time, 1.5, 1e-5);
     near(hit.normal[0], -1.0, 1e-6);
     assert_eq!(world.cast(&at(4.0), &back, &CastOptions { duration: 1.4, ..options }, ALL_LAYERS).unwrap(), None);
     assert_eq!(world.cast(&at(4.0), &back, &options, 0).unwrap(), None);
+    let hits = world.cast_all(&at(4.0), &back, &options, ALL_LAYERS).unwrap();
+    assert_eq!(hits.iter().map(|h| h.object).collect::<Vec<_>>(), [objects[2], objects[1], objects[0]]);
+    for (i, hit) in hits.iter().enumerate() {
+        near(hit.time, 1.5 + i as f64, 1e-5);
+    }
+    let filter = QueryFilter { ignored: &objects[1..2], ..Default::default() };
+    assert_eq!(world.cast_all(&at(4.0), &back, &options, filter).unwrap().len(), 2);
+    assert!(world.cast_all(&at(4.0), &back, &options, 0).unwrap().is_empty());
+    let touched = world.contact_manifolds(&at(2.3), 0.0, 4, ALL_LAYERS).unwrap();
+    assert_eq!(touched.iter().map(|m| (m.object, m.user)).collect::<Vec<_>>(), [(objects[2], 2)]);
+    near(touched[0].contact.depth, 0.2, 1e-6);
+    near(touched[0].contact.normal[0], -1.0, 1e-6);
+    assert_eq!(touched[0].contact.points.len(), 1);
+    assert!(world.contact_manifolds(&at(9.0), 0.0, 4, ALL_LAYERS).unwrap().is_empty());
+    assert_eq!(world.contact_manifolds(&at(1.5), 0.5, 4, ALL_LAYERS).unwrap().len(), 2);
+    assert_eq!(world.contact_manifolds(&at(0.0), 0.0, 9, ALL_LAYERS).unwrap_err().status, Status::OutOfRange);
+    assert_eq!(world.contact_manifolds(&at(0.0), f64::NAN, 4, ALL_LAYERS).unwrap_err().status, Status::NonFinite);
     let nan = Motion { velocity: [f64::NAN, 0.0, 0.0], ..back };
     assert_eq!(world.cast(&at(4.0), &nan, &options, ALL_LAYERS).unwrap_err().status, Status::NonFinite);
     let floor = Shape::half_space([0.0, 1.0, 0.0], 0.0).unwrap();
     let ground = QueryShape::Shape(floor.at(Transform::default()));
     assert_eq!(world.overlap(&ground, ALL_LAYERS, &mut found).unwrap_err().status, Status::Unsupported);
+    let ground = floor.at(Transform::default());
+    assert_eq!(world.contact_manifolds(&ground, 0.0, 4, ALL_LAYERS).unwrap_err().status, Status::Unsupported);
     // A mesh says which triangle it is met at.
     let mesh = tetrahedron(&mut world);
     world.add(&Description::mesh(mesh).at(Transform::at([50.0, 0.0, 0.0])).user(9)).unwrap();
