@@ -443,9 +443,7 @@ impl World {
         let found = Found::new()?;
         let (mut manifolds, mut count) = (ptr::null(), 0);
         let filter = filter.into();
-        check(unsafe {
-            sys::crofton_world_manifolds(self.raw, &shape.raw(), &options, &filter.raw(), found.raw)
-        })?;
+        check(unsafe { sys::crofton_world_manifolds(self.raw, &shape.raw(), &options, &filter.raw(), found.raw) })?;
         check(unsafe { sys::crofton_found_manifolds(found.raw, &mut manifolds, &mut count) })?;
         Ok(unsafe { slice(manifolds, count) }
             .iter()

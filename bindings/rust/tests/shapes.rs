@@ -141,27 +141,6 @@ fn meshes_touch_or_are_apart() {
 }
 
 #[test]
-fn a_shape_that_is_no_object_is_cast_through_all_and_touches() {
-    let mut world = World::new().unwrap();
-    let objects: Vec<Object> = (0..3)
-        .map(|i| world.add(&Description::bound(Bound::Sphere { center: [f64::from(i), 0.0, -5.0], radius: 0.25 })).unwrap())
-        .collect();
-    world.update().unwrap();
-    let capsule = Shape::capsule(0.25, 1.0).unwrap();
-    let at = |x| capsule.at(Transform::at([x, 0.0, -5.0]));
-    let motion = Motion { velocity: [-1.0, 0.0, 0.0], ..Default::default() };
-    let long = CastOptions { duration: 9.0, ..Default::default() };
-    let hits = world.cast_all(&at(4.0), &motion, &long, ALL_LAYERS).unwrap();
-    assert_eq!(hits.iter().map(|hit| hit.object).collect::<Vec<_>>(), [objects[2], objects[1], objects[0]]);
-    assert!(hits.iter().enumerate().all(|(i, hit)| (hit.time - 1.5 - i as f64).abs() < 1e-5 && hit.triangle == u32::MAX));
-    let touched = world.contact_manifolds(&at(2.3), 0.0, 4, ALL_LAYERS).unwrap();
-    assert_eq!((touched.len(), touched[0].object, touched[0].contact.points.len()), (1, objects[2], 1));
-    assert!((touched[0].contact.depth - 0.2).abs() < 1e-6 && (touched[0].contact.normal[0] + 1.0).abs() < 1e-6);
-    assert_eq!(world.contact_manifolds(&at(1.5), 0.5, 4, ALL_LAYERS).unwrap().len(), 2);
-    assert_eq!(world.contact_manifolds(&at(0.0), 0.0, 9, ALL_LAYERS).unwrap_err().status, Status::OutOfRange);
-}
-
-#[test]
 fn rays_meet_a_mesh() {
     let mesh = Shape::mesh(&TETRAHEDRON, &FACES, false).unwrap();
     let from = |x| mesh.at(Transform::default()).raycast(&Ray::new([x, 0.2, -1.0], [0.0, 0.0, 1.0])).unwrap();

@@ -189,6 +189,7 @@ fn a_world_answers_probes_of_any_shape() {
     assert_eq!(hits.iter().map(|h| h.object).collect::<Vec<_>>(), [objects[2], objects[1], objects[0]]);
     for (i, hit) in hits.iter().enumerate() {
         near(hit.time, 1.5 + i as f64, 1e-5);
+        assert_eq!(hit.triangle, u32::MAX);
     }
     let filter = QueryFilter { ignored: &objects[1..2], ..Default::default() };
     assert_eq!(world.cast_all(&at(4.0), &back, &options, filter).unwrap().len(), 2);
