@@ -29,6 +29,7 @@ def examples(cube):
         world.add_node(), world.add_mesh(mesh), region, crofton.World().attach(region, (0, 0, 0)), world.contacts[0].first, world.contacts[0], world,
         world.raycast((0, 0, 5), (0, 0, -1)), world.closest(10, sphere=((5, 0, 0), 1)),
         world.cast(crofton.Shape.sphere(1), (0, 0, -9), [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 5]]),
+        world.contact_manifolds(crofton.Shape.sphere(1))[0],
         hiding.hidden_by(hiding.view(camera, occlusion=True))[0], crofton.OcclusionOptions(), crofton.ViewMatrix(np.eye(4)), crofton.PictureView(), crofton.DrawLimits((0, 0, 0)),
         crofton.ViewRequest(camera, order="tree"), crofton.ShadowReceivers(world.view(camera)), world.view(camera), world.view([camera]), mesh, mesh.show(),
         mesh.raycast((0, 0, 5), (0, 0, -1)), mesh.distance(mesh), crofton.Shape.sphere(1), crofton.Shape.sphere(1).mass,

@@ -572,7 +572,7 @@ def test_a_shape_that_is_no_object_is_cast_through_all_and_touches(world, cube):
     mesh = world.add_mesh(*cube)
     near = world.add(mesh=mesh, transform=at(0, 0, -5), user=7)
     world.add(mesh=mesh, transform=at(0, 0, -10), user=8)
-    world.add(bound=crofton.Sphere((0, 0, -15), 1), user=9)
+    world.add(sphere=((0, 0, -15), 1), user=9)
     world.update()
     ball = crofton.Shape.sphere(0.5)
     hits = world.cast_all(ball, (0, 0, -20))
