@@ -104,12 +104,14 @@ Result<VkRenderPass> create_render_pass(const VulkanContext& context, const Pass
     VkAttachmentDescription color{};
     color.format = kColorFormat;
     color.samples = VK_SAMPLE_COUNT_1_BIT;
-    color.loadOp = description.color;
+    color.loadOp = description.keep_color         ? VK_ATTACHMENT_LOAD_OP_LOAD
+                   : description.draws_all_pixels ? VK_ATTACHMENT_LOAD_OP_DONT_CARE
+                                                  : VK_ATTACHMENT_LOAD_OP_CLEAR;
     color.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
     color.stencilLoadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;
     color.stencilStoreOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
     color.finalLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-    if (description.color == VK_ATTACHMENT_LOAD_OP_LOAD) color.initialLayout = color.finalLayout;
+    if (description.keep_color) color.initialLayout = color.finalLayout;
     VkAttachmentDescription depth = color;
     depth.format = description.depth_format;
     depth.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;

@@ -79,7 +79,7 @@ Result<void> Pipelines::create() {
     auto pass = create_render_pass(context, {.depth_format = kDepthFormat});
     if (!pass) return std::move(pass.error());
     render_pass = *pass;
-    auto covered = create_render_pass(context, {VK_ATTACHMENT_LOAD_OP_DONT_CARE, kDepthFormat});
+    auto covered = create_render_pass(context, {.depth_format = kDepthFormat, .draws_all_pixels = true});
     if (!covered) return std::move(covered.error());
     covered_pass = *covered;
     if (auto made = create_layout(*this); !made) return made;

@@ -88,7 +88,7 @@ Result<void> UiRenderer::create_layouts() {
 }
 
 Result<void> UiRenderer::create_pipeline() {
-    auto pass = render::create_render_pass(context_, {.color = VK_ATTACHMENT_LOAD_OP_LOAD});
+    auto pass = render::create_render_pass(context_, {.keep_color = true});
     if (!pass) return std::move(pass.error());
     pass_ = *pass;
     render::PipelineDescription description{

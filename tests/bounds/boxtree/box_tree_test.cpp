@@ -144,10 +144,12 @@ TEST_SUITE("boxtree/box_tree") {
         ThreadPool threads(2);
         std::vector<Obb> spread = oracle::random_crowd(kCount, 0.0, 11).boxes;
         std::vector<Obb> crowded(kCount);  // all in one place
-        for (const auto& [boxes, turned] : {std::pair(&spread, false), {&crowded, false}, {&crowded, true}})
+        for (const auto& input : {std::pair(&spread, false), {&crowded, false}, {&crowded, true}})
             for (Executor* const executor : {&serial_executor(), static_cast<Executor*>(&threads)}) {
+                const std::vector<Obb>& boxes = *input.first;
+                const bool turned = input.second;
                 CAPTURE(turned);
-                const auto build = [&, &boxes = *boxes, turned = turned](Asked& asked) {
+                const auto build = [&](Asked& asked) {
                     return BoxTree::build(
                         boxes,
                         {.orientation = turned ? boxtree::Orientation::oriented : boxtree::Orientation::aligned,
@@ -159,7 +161,7 @@ TEST_SUITE("boxtree/box_tree") {
                 const auto tree = build(all);
                 REQUIRE(tree);
                 CHECK(tree->serialise() ==
-                      BoxTree::build(*boxes, {.orientation = tree->structure().orientation()})->serialise());
+                      BoxTree::build(boxes, {.orientation = tree->structure().orientation()})->serialise());
                 CHECK(all.count >= 4);
                 CHECK(all.count < 200);
                 // Threads are asked as they come: another time some fewer or more.

@@ -10,8 +10,9 @@ namespace crofton::render {
 // One pass over a picture of kColorFormat. The picture ends in SHADER_READ_ONLY_OPTIMAL, visible to following transfers
 // and fragment shaders. A picture that is kept must be in that layout before.
 struct PassDescription {
-    VkAttachmentLoadOp color = VK_ATTACHMENT_LOAD_OP_CLEAR;  // DONT_CARE: all pixels are drawn
+    bool keep_color = false;                      // false: cleared
     VkFormat depth_format = VK_FORMAT_UNDEFINED;  // cleared, and discarded after the pass; UNDEFINED: no depth
+    bool draws_all_pixels = false;                // colour is not cleared, unless it is kept
 };
 [[nodiscard]] Result<VkRenderPass> create_render_pass(const VulkanContext& context, const PassDescription& description);
 
