@@ -154,7 +154,7 @@ TEST_SUITE("world/shape_cast") {
             CHECK(std::abs(hit->time - time) < 2e-7);  // either within the tolerance
             const RigidTransform then = convex::moved(from, fly, hit->time);
             if (shapes[expected].kind() != convex::Kind::mesh) {
-                CHECK(hit->triangle == 0);
+                CHECK(hit->triangle == kNoTriangle);
                 continue;
             }
             ++at_triangles;
