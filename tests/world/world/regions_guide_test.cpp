@@ -107,8 +107,7 @@ TEST_SUITE("world/regions guide") {
         std::uint32_t place = 0;
         {
             const crofton::World& world = played;
-            // The parts that are loaded, and where they stand. Saved: the number of a part, and the place of its
-            // object.
+            // Saved: the number of a part that is loaded, and the place of its object.
             const auto saved = world.place_of(opened_door).value().index;
             place = saved;
         }
