@@ -315,10 +315,6 @@ Result<void> World::contact_manifolds(const convex::Shape& probe, const RigidTra
     Vector<std::uint32_t> numbers;
     for (const Near& object : near) {
         const convex::ShapeAtPose other = object.stand.placed();
-        const bool convex = probe.is_convex() && other.shape.is_convex();
-        convex::PairCache cache;  // the union's search begins with what the two alone have found
-        convex::contact_manifolds(placed, other, options, manifolds, convex ? &cache : nullptr);
-        if (manifolds.all().empty()) continue;
         beside.clear();
         numbers.clear();
         for (const Near& neighbor : near) {
@@ -326,11 +322,14 @@ Result<void> World::contact_manifolds(const convex::Shape& probe, const RigidTra
             beside.push_back(neighbor.stand.placed());
             numbers.push_back(neighbor.id);
         }
-        if (convex)
+        if (probe.is_convex() && other.shape.is_convex()) {
+            convex::PairCache cache;  // the union's search begins with what the two alone have found
+            convex::contact_manifolds(placed, other, options, manifolds, &cache);
             convex::push_out_of_union(placed, other, {{{}, beside}, kNoIndex, object.id, {}, numbers}, options,
                                       manifolds, memory, cache);
-        else
+        } else {
             convex::contact_manifolds(placed, other, {{}, beside}, options, manifolds);
+        }
         const ObjectRef ref = s.ref_of(object.id);
         const std::size_t first = found.size();
         for (const convex::Manifold& manifold : manifolds.all()) found.push_back({ref.object, ref.user, manifold});
