@@ -152,21 +152,13 @@ crofton_status crofton_found_destroy(crofton_found* found) {
 crofton_status crofton_found_objects(const crofton_found* found, const crofton_object_ref** objects, size_t* count) {
     const SharedUse use(found, __func__);
     if (use.failed()) return use.status();
-    CROFTON_CHECK(check_pointer(objects, __func__));
-    CROFTON_CHECK(check_pointer(count, __func__));
-    *objects = reinterpret_cast<const crofton_object_ref*>(found->objects.data());
-    *count = found->objects.size();
-    return CROFTON_OK;
+    return give_list(found->objects, objects, count, __func__);
 }
 
 crofton_status crofton_found_hits(const crofton_found* found, const crofton_object_hit** hits, size_t* count) {
     const SharedUse use(found, __func__);
     if (use.failed()) return use.status();
-    CROFTON_CHECK(check_pointer(hits, __func__));
-    CROFTON_CHECK(check_pointer(count, __func__));
-    *hits = reinterpret_cast<const crofton_object_hit*>(found->hits.data());
-    *count = found->hits.size();
-    return CROFTON_OK;
+    return give_list(found->hits, hits, count, __func__);
 }
 
 crofton_status crofton_world_raycast_all(const crofton_world* world, const crofton_ray* ray,
@@ -227,20 +219,12 @@ crofton_status crofton_world_closest(const crofton_world* world, const crofton_q
 crofton_status crofton_world_pairs(const crofton_world* world, const crofton_object_pair** pairs, size_t* count) {
     const SharedUse use(world, __func__);
     if (use.failed()) return use.status();
-    CROFTON_CHECK(check_pointer(pairs, __func__));
-    CROFTON_CHECK(check_pointer(count, __func__));
-    *pairs = reinterpret_cast<const crofton_object_pair*>(world->world.pairs().data());
-    *count = world->world.pairs().size();
-    return CROFTON_OK;
+    return give_list(world->world.pairs(), pairs, count, __func__);
 }
 
 crofton_status crofton_world_contacts(const crofton_world* world, const crofton_object_contact** contacts,
                                       size_t* count) {
     const SharedUse use(world, __func__);
     if (use.failed()) return use.status();
-    CROFTON_CHECK(check_pointer(contacts, __func__));
-    CROFTON_CHECK(check_pointer(count, __func__));
-    *contacts = reinterpret_cast<const crofton_object_contact*>(world->world.contacts().data());
-    *count = world->world.contacts().size();
-    return CROFTON_OK;
+    return give_list(world->world.contacts(), contacts, count, __func__);
 }

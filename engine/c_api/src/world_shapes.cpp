@@ -113,20 +113,12 @@ crofton_status crofton_world_manifolds(const crofton_world* world, const crofton
 crofton_status crofton_found_shape_hits(const crofton_found* found, const crofton_shape_hit** hits, size_t* count) {
     const SharedUse use(found, __func__);
     if (use.failed()) return use.status();
-    CROFTON_CHECK(check_pointer(hits, __func__));
-    CROFTON_CHECK(check_pointer(count, __func__));
-    *hits = found->shape_hits.data();
-    *count = found->shape_hits.size();
-    return CROFTON_OK;
+    return give_list(found->shape_hits, hits, count, __func__);
 }
 
 crofton_status crofton_found_manifolds(const crofton_found* found, const crofton_object_manifold** manifolds,
                                        size_t* count) {
     const SharedUse use(found, __func__);
     if (use.failed()) return use.status();
-    CROFTON_CHECK(check_pointer(manifolds, __func__));
-    CROFTON_CHECK(check_pointer(count, __func__));
-    *manifolds = reinterpret_cast<const crofton_object_manifold*>(found->manifolds.data());
-    *count = found->manifolds.size();
-    return CROFTON_OK;
+    return give_list(found->manifolds, manifolds, count, __func__);
 }
