@@ -2,6 +2,8 @@
 // What World costs beside the parts that it is made of, used by hand: the same frames in turns, the least time of each.
 // docs/notes/world.md says what the hand-written side does.
 //   bench_world               the table
+//   bench_world --churn       what ten million spawns and despawns leave behind, as CSV; --churn=N: N of them
+//     --live=N, --part=N      among so many objects, of which an Nth changes in an update; 20,000 and 100
 //   bench_world --changes     what an update costs in which one object comes, goes, moves or changes, as CSV
 //   bench_world --queries     queries among objects of which some move
 //   bench_world --bytes       bytes an object, as CSV
@@ -53,7 +55,9 @@ constexpr Row kRows[] = {
 
 struct Options {
     int frames = 200, repetitions = 1;
-    bool changes = false, queries = false, stacks = false, bytes = false, regions = false, growth = false;
+    bool churn = false, changes = false, queries = false, stacks = false, bytes = false, regions = false,
+         growth = false;
+    std::size_t spawns = 10'000'000, live = 20'000, part = 100;
     std::string out, part_of_regions;
     std::regex filter{""};
 };
@@ -66,6 +70,12 @@ bool parse(int argc, char** argv, Options& options) {
         const std::string value(argument.substr(std::min(equals + 1, argument.size())));
         if (key == "--frames")
             options.frames = std::stoi(value);
+        else if (key == "--churn")
+            options.churn = true, options.spawns = value.empty() ? options.spawns : std::stoul(value);
+        else if (key == "--live")
+            options.live = std::stoul(value);
+        else if (key == "--part")
+            options.part = std::stoul(value);
         else if (key == "--changes")
             options.changes = true;
         else if (key == "--queries")
@@ -120,6 +130,12 @@ int main(int argc, char** argv) {
         return 1;
     }
     const char* const target = crofton::bench::target_in_use();
+    if (options.churn) {
+        std::printf("# command: bench_world --churn=%zu --live=%zu --part=%zu --target=%s\n", options.spawns,
+                    options.live, options.part, target);
+        crofton::bench::churn(options.live, options.part, options.spawns);
+        return 0;
+    }
     if (options.bytes) {
         std::printf("# command: bench_world --bytes --target=%s\n", target);
         crofton::bench::bytes();

@@ -69,6 +69,9 @@ FrameTimes rays(std::size_t count, std::size_t moving, int frames);
 FrameTimes views_of_meshes(std::size_t count, std::size_t moving, int frames);
 FrameTimes views_of_own_scene(std::size_t count, std::size_t moving, int frames);
 
+// Spawns and despawns among as many that live, a `part`th in each update: rows of a CSV to stdout (world_churn.cpp).
+void churn(std::size_t live_count, std::size_t part, std::size_t spawns);
+
 // Bytes an object: a table to stdout (world_bytes.cpp).
 void bytes();
 
