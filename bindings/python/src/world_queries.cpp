@@ -153,31 +153,38 @@ PyObject* raycast_method(PyObject* self, PyObject* const* values, Py_ssize_t cou
     });
 }
 
+// What casts are given.
+struct Cast {
+    Cast(const py::handle& velocity, const py::object& given_pose, const py::handle& spin, double duration,
+         bool ignore_initial_overlaps, std::uint32_t layers, const py::handle& ignored)
+        : filter(layers, ignored),
+          motion{vector_of(velocity, "velocity"), vector_of(spin, "spin")},
+          pose(pose_of(given_pose, "pose")),
+          options{.duration = duration, .ignore_initial_overlaps = ignore_initial_overlaps} {}
+
+    Filter filter;
+    convex::Motion motion;
+    RigidTransform pose;
+    convex::CastOptions options;
+};
+
 std::optional<ShapeHit> cast(const PyWorld& world, const PyShape& shape, const py::handle& velocity,
                              const py::object& given_pose, const py::handle& spin, double duration,
                              bool ignore_initial_overlaps, std::uint32_t layers, const py::handle& ignored) {
-    const Filter filter(layers, ignored);
-    convex::Motion motion;
-    motion.velocity = vector_of(velocity, "velocity");
-    motion.spin = vector_of(spin, "spin");
-    const RigidTransform pose = pose_of(given_pose, "pose");
-    const convex::CastOptions options{.duration = duration, .ignore_initial_overlaps = ignore_initial_overlaps};
-    return value_of(
-        world.ask([&](const World& w) { return w.cast(*shape.shape, pose, motion, options, filter.get()); }));
+    const Cast given(velocity, given_pose, spin, duration, ignore_initial_overlaps, layers, ignored);
+    return value_of(world.ask([&](const World& w) {
+        return w.cast(*shape.shape, given.pose, given.motion, given.options, given.filter.get());
+    }));
 }
 
 py::list cast_all(const PyWorld& world, const PyShape& shape, const py::handle& velocity, const py::object& given_pose,
                   const py::handle& spin, double duration, bool ignore_initial_overlaps, std::uint32_t layers,
                   const py::handle& ignored) {
-    const Filter filter(layers, ignored);
-    convex::Motion motion;
-    motion.velocity = vector_of(velocity, "velocity");
-    motion.spin = vector_of(spin, "spin");
-    const RigidTransform pose = pose_of(given_pose, "pose");
-    const convex::CastOptions options{.duration = duration, .ignore_initial_overlaps = ignore_initial_overlaps};
+    const Cast given(velocity, given_pose, spin, duration, ignore_initial_overlaps, layers, ignored);
     Vector<ShapeHit> hits;
-    value_of(
-        world.ask([&](const World& w) { return w.cast_all(*shape.shape, pose, motion, options, hits, filter.get()); }));
+    value_of(world.ask([&](const World& w) {
+        return w.cast_all(*shape.shape, given.pose, given.motion, given.options, hits, given.filter.get());
+    }));
     py::list result;
     for (const ShapeHit& hit : hits) result.append(hit);
     return result;
