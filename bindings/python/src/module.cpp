@@ -81,7 +81,7 @@ PYBIND11_MODULE(_crofton, module) {
     bind_world(module);
     bind_pvs(module);
     refuse_copies(module);
-    // Of an argument that pybind11 shares, such as a mesh.
+    // Translates the exception of an argument that pybind11 shares, such as a mesh.
     py::register_local_exception_translator([](std::exception_ptr thrown) {
         try {
             std::rethrow_exception(thrown);

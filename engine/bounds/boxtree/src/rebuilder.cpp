@@ -26,7 +26,7 @@ constexpr std::size_t kManyPlaced = 32;
 // Clusters then keep the steps short.
 constexpr BuildGrain kWithRoom{4096, 14};
 constexpr std::size_t kMostBudget = ~std::size_t{0} / 128;  // so that no multiple of it, added to an index, overflows
-// What bringing an item up to date costs. Placing it may also split leaves and nodes.
+// The costs of bringing an item up to date. Placing it may also split leaves and nodes.
 constexpr std::size_t kItemMoved = 48, kItemPlaced = 160, kSplit = 160;
 
 std::size_t steps(std::size_t budget, std::size_t cost) {

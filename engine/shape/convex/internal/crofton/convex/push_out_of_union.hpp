@@ -74,8 +74,8 @@ struct NumberedBeside {
     std::span<const std::uint32_t> numbers_a = {}, numbers_b = {};
 };
 
-// Of two convex shapes: `found` is what contact_manifolds() gives of the two alone with the cache, and becomes what it
-// gives of them beside others.
+// Replaces the contacts of two convex shapes alone, which contact_manifolds() has found with the cache, by their
+// contacts beside others.
 void push_out_of_union(const ShapeAtPose& a, const ShapeAtPose& b, const NumberedBeside& beside,
                        const ManifoldOptions& options, Manifolds& found, PairMemory& memory, PairCache& cache);
 
