@@ -2,24 +2,29 @@
 // `crofton study hierarchy`: chains of bounds of the plane, each the best given the ones before it: section 4 of the
 // paper.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <crofton/fit/fit.hpp>
+#include <crofton/geometry/shapes.hpp>
 #include <crofton/measure/measure.hpp>
 #include <crofton/sampling/sampling.hpp>
 #include <crofton/study/planar_bounds.hpp>
 #include <crofton/study/planar_lines.hpp>
 #include <cstdio>
 #include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
 #include <numbers>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "assets/print.hpp"
 #include "commands.hpp"
-#include "hierarchy_svg.hpp"
 #include "json/json.hpp"
 #include "polygon_files.hpp"
 #include "progress_bar.hpp"
 #include "report.hpp"
+#include "svg_panel.hpp"
 #include "verify/rows.hpp"
 
 namespace crofton::cli {
@@ -27,6 +32,79 @@ namespace {
 
 using std::numbers::pi;
 using study::PlanarSupport;
+
+struct ChainLevel {
+    std::optional<Disc> disc;
+    std::optional<Rectangle> rectangle;  // one of both
+    double measure = 0.0;                // of the lines that hit this bound and all before it
+    double gap = 0.0;                    // proved: no bound of its kind has less than measure − gap
+};
+
+struct Chain {
+    std::string name;
+    std::vector<glm::dvec2> object;
+    double own = 0.0;  // the measure of the lines that hit the object
+    std::vector<ChainLevel> levels;
+};
+
+constexpr double kChainPanel = 320.0, kChainHeading = 24.0, kChainMargin = 14.0;
+constexpr const char* kChainColors[] = {"#1b2a41", "#0a58ca", "#c8553d", "#2a9d8f",
+                                        "#8e6bbf", "#b08900", "#777777", "#aaaaaa"};
+
+const char* color_of(std::size_t level) {
+    return kChainColors[level % std::size(kChainColors)];
+}
+
+std::array<glm::dvec2, 4> outline_of(const Rectangle& r) {
+    const glm::dvec2 x = r.half_extents.x * r.axis, y = r.half_extents.y * glm::dvec2(-r.axis.y, r.axis.x);
+    return {r.center - x - y, r.center + x - y, r.center + x + y, r.center - x + y};
+}
+
+void draw(const Chain& chain, const glm::dvec2& corner, std::string& svg) {
+    SvgPanel panel(corner + glm::dvec2(0.5 * kChainPanel, kChainHeading + 0.5 * kChainPanel),
+                   kChainPanel - 2.0 * kChainMargin, svg);
+    for (const ChainLevel& level : chain.levels) {
+        if (level.disc) {
+            panel.include_disc(level.disc->center, level.disc->radius);
+            continue;
+        }
+        for (const glm::dvec2& p : outline_of(*level.rectangle)) panel.include(p);
+    }
+    panel.path(chain.object, "fill='#dfe6ee' stroke='#555' stroke-width='2'");
+    for (std::size_t k = 0; k < chain.levels.size(); ++k) {
+        const ChainLevel& level = chain.levels[k];
+        const std::string style = std::string("fill='none' stroke-width='1.5' stroke='") + color_of(k) + "'";
+        if (level.disc)
+            panel.disc(level.disc->center, level.disc->radius, style);
+        else
+            panel.path(outline_of(*level.rectangle), style);
+    }
+}
+
+// Draws a line with the meaning of each colour.
+void draw_legend(std::size_t levels, double y, std::string& svg) {
+    svg_text(svg, kChainMargin, y, "", "filled: the object");
+    for (std::size_t k = 0; k < levels; ++k)
+        svg_text(svg, kChainMargin + 130.0 + 80.0 * static_cast<double>(k), y, color_of(k),
+                 "level " + std::to_string(k + 1));
+}
+
+// A panel a chain, three in a row, and a line that says which level has which colour.
+std::string hierarchy_svg(const std::vector<Chain>& chains) {
+    const std::size_t rows = (chains.size() + 2) / 3;
+    const double legend = static_cast<double>(rows) * (kChainPanel + kChainHeading);
+    std::string svg = svg_head(3.0 * kChainPanel, legend + kChainHeading);
+    for (std::size_t i = 0; i < chains.size(); ++i) {
+        const glm::dvec2 corner(static_cast<double>(i % 3) * kChainPanel,
+                                static_cast<double>(i / 3) * (kChainPanel + kChainHeading));
+        svg_text(svg, corner.x + kChainMargin, corner.y + 16.0, "", chains[i].name);
+        draw(chains[i], corner, svg);
+    }
+    std::size_t levels = 0;
+    for (const Chain& chain : chains) levels = std::max(levels, chain.levels.size());
+    draw_legend(levels, legend + 8.0, svg);
+    return svg + "</svg>\n";
+}
 
 struct HierarchyOptions {
     std::string file, json, svg;

@@ -4,14 +4,45 @@
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/cull/bound_set.hpp>
 #include <crofton/cull/cull.hpp>
+#include <crofton/geometry/box.hpp>
+#include <crofton/geometry/camera.hpp>
+#include <crofton/geometry/shapes.hpp>
+#include <cstdint>
 #include <cstdio>
 #include <oracle/near_misses.hpp>
+#include <oracle/sphere_verdict.hpp>
 
-#include "certificate.hpp"
+#include "exact_numbers.hpp"
 #include "topics.hpp"
 
 namespace crofton::cli {
 namespace {
+
+using oracle::NearMisses;
+
+enum class Proof : std::uint8_t { meets, disjoint, none };
+
+template <class Box>
+Proof prove_box(const Frustum& frustum, const Box& box) {
+    const auto feasible = oracle::proven_feasible<Dyadic>(
+        [&]<class Number>() { return oracle::quick::rows_of_box<Number>(frustum, box); });
+    return !feasible ? Proof::none : *feasible ? Proof::meets : Proof::disjoint;
+}
+
+// By the oracles of the tests: tests/oracle/feasible.hpp for boxes, sphere_verdict.hpp for spheres. Returns `none` for
+// boxes that touch to within rounding.
+Proof prove(const Frustum& frustum, const Obb& box) {
+    return prove_box(frustum, box);
+}
+Proof prove(const Frustum& frustum, const Aabb& box) {
+    return prove_box(frustum, box);
+}
+
+Proof prove(const Frustum& frustum, const Sphere& sphere) {
+    const auto verdict =
+        oracle::decide_by<Dyadic>([&]<class Number>() { return oracle::SphereVerdict<Number>(frustum, sphere)(); });
+    return verdict == cull::Verdict::outside ? Proof::disjoint : Proof::meets;
+}
 
 constexpr std::size_t kBatch = 2048;  // bounds per view
 
@@ -19,8 +50,6 @@ struct CullCounts {
     std::uint64_t meeting = 0, disjoint = 0, unproved = 0, false_culls = 0, false_accepts = 0,
                   false_culls_conservative = 0, disagreements = 0;
 };
-
-using oracle::NearMisses;
 
 // A proof is always found for boxes with a width.
 bool has_width(const Obb& box) {

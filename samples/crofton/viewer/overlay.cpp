@@ -8,10 +8,18 @@
 #include <crofton/boxtree/structure.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 #include <iterator>
 
 namespace crofton::viewer {
 namespace {
+
+// Corner i and corner i with one bit set: the twelve edges of a box.
+void edges(LineList& lines, const std::array<glm::dvec3, 8>& corner, std::uint32_t color) {
+    for (unsigned i = 0; i < 8; ++i)
+        for (unsigned bit = 1; bit < 8; bit <<= 1)
+            if ((i & bit) == 0) lines.segment(corner[i], corner[i | bit], color);
+}
 
 constexpr std::uint32_t kOutside = rgba(225, 60, 70), kBound = rgba(250, 235, 90), kFrustum = rgba(255, 255, 255),
                         kTree = rgba(110, 220, 255), kPair = rgba(255, 90, 60), kContact = rgba(255, 250, 80),
@@ -24,7 +32,88 @@ constexpr std::array<std::uint32_t, 8> kCascades{rgba(255, 90, 90),   rgba(255, 
 constexpr std::size_t kMaxPairs = 200;
 constexpr std::size_t kMaxContactsOfPair = 64;
 
+// The bound of a node's child, along the node's axes.
+Obb bound_of(const boxtree::Structure& structure, boxtree::NodeId id, unsigned lane) {
+    const boxtree::Node& node = structure.nodes()[id];
+    const boxtree::Axes& axes = structure.axes_of(node);
+    Obb box{{node.origin[0], node.origin[1], node.origin[2]}, {}, {}};
+    for (unsigned k = 0; k < 3; ++k) {
+        const glm::dvec3 axis(axes.rows[k][0], axes.rows[k][1], axes.rows[k][2]);
+        box.center += double{node.unit} * boxtree::middle_of(node, lane, k) * axis;
+        box.axes[static_cast<int>(k)] = glm::vec3(axis);
+        box.half_extents[static_cast<int>(k)] = node.unit * static_cast<float>(boxtree::half_of(node, lane, k));
+    }
+    return box;
+}
+
 }  // namespace
+
+Json to_json(const CellSight& sight) {
+    constexpr const char* kKinds[] = {"unknown", "solid", "inner", "open"};
+    return {{"cell", sight.cell},
+            {"kind", kKinds[static_cast<std::size_t>(sight.kind)]},
+            {"seen", sight.seen},
+            {"unseen", sight.unseen},
+            {"hidden", sight.hidden}};
+}
+
+std::optional<CellSight> look_up(const pvs::Pvs* pvs, const pipeline::FrameStatistics& frame) {
+    if (pvs == nullptr) return std::nullopt;
+    CellSight sight;
+    sight.cell = pvs->find_cell(frame.camera.position);
+    if (sight.cell == pvs::kNoCell) return std::nullopt;
+    sight.kind = pvs->kind(sight.cell);
+    sight.box = pvs->cells().box(sight.cell);
+    for (std::uint32_t o = 0; o < pvs->object_count(); ++o) {
+        if (!pvs->is_baked(o)) continue;
+        const pvs::PairState state = pvs->state(sight.cell, o);
+        ++(state == pvs::PairState::seen ? sight.seen : state == pvs::PairState::unseen ? sight.unseen : sight.hidden);
+    }
+    return sight;
+}
+
+void LineList::segment(const glm::dvec3& a, const glm::dvec3& b, std::uint32_t color) {
+    vertices_.push_back({glm::vec3(a - controller_), color});
+    vertices_.push_back({glm::vec3(b - controller_), color});
+}
+
+void LineList::box(const Obb& box, std::uint32_t color) {
+    edges(*this, corners(box), color);
+}
+
+void LineList::axes(const Obb& box) {
+    constexpr std::array<std::uint32_t, 3> kAxisColors{rgba(255, 60, 60), rgba(60, 255, 60), rgba(90, 120, 255)};
+    for (int k = 0; k < 3; ++k) {
+        const glm::dvec3 arm = glm::dvec3(box.axes[k]) * (1.3 * static_cast<double>(box.half_extents[k]));
+        segment(box.center - arm, box.center + arm, kAxisColors[static_cast<std::size_t>(k)]);
+    }
+}
+
+void LineList::cross(const glm::dvec3& at, double size, std::uint32_t color) {
+    for (int k = 0; k < 3; ++k) {
+        glm::dvec3 arm(0.0);
+        arm[k] = size;
+        segment(at - arm, at + arm, color);
+    }
+}
+
+std::array<glm::dvec3, 8> view_corners(const Camera& camera, double far) {
+    const glm::dmat3 to_world = glm::transpose(world_to_view_rotation(camera));
+    std::array<glm::dvec3, 8> result;
+    for (unsigned i = 0; i < 8; ++i) {
+        const double depth = (i & 4) != 0 ? std::min(camera.far_distance, far) : camera.near_distance;
+        const double half =
+            camera.projection == Projection::perspective ? depth * std::tan(0.5 * camera.fov_y) : 0.5 * camera.height;
+        const glm::dvec3 in_view((i & 1) != 0 ? half * camera.aspect : -half * camera.aspect,
+                                 (i & 2) != 0 ? half : -half, -depth);
+        result[i] = camera.position + to_world * in_view;
+    }
+    return result;
+}
+
+void LineList::frustum(const Camera& camera, double far, std::uint32_t color) {
+    edges(*this, view_corners(camera, far), color);
+}
 
 std::vector<Cascade> split_view(const Camera& camera, int count, double range) {
     std::vector<Cascade> result;
@@ -118,24 +207,6 @@ void Overlay::draw_bounds(LineList& lines, const Settings& settings, const Loade
         for (const scene::InstanceId i : frame.visible_ids) lines.box(boxes[i], kBound);
     }
 }
-
-namespace {
-
-// The bound of a node's child, along the node's axes.
-Obb bound_of(const boxtree::Structure& structure, boxtree::NodeId id, unsigned lane) {
-    const boxtree::Node& node = structure.nodes()[id];
-    const boxtree::Axes& axes = structure.axes_of(node);
-    Obb box{{node.origin[0], node.origin[1], node.origin[2]}, {}, {}};
-    for (unsigned k = 0; k < 3; ++k) {
-        const glm::dvec3 axis(axes.rows[k][0], axes.rows[k][1], axes.rows[k][2]);
-        box.center += double{node.unit} * boxtree::middle_of(node, lane, k) * axis;
-        box.axes[static_cast<int>(k)] = glm::vec3(axis);
-        box.half_extents[static_cast<int>(k)] = node.unit * static_cast<float>(boxtree::half_of(node, lane, k));
-    }
-    return box;
-}
-
-}  // namespace
 
 void Overlay::draw_tree_level(LineList& lines, const boxtree::BoxTree& tree, int level) {
     const boxtree::Structure& structure = tree.structure();

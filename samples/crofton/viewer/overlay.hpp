@@ -3,16 +3,63 @@
 #pragma once
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/crofton.hpp>
+#include <crofton/geometry/box.hpp>
+#include <crofton/geometry/camera.hpp>
+#include <crofton/pvs/pvs.hpp>
+#include <crofton/render/rasterizer.hpp>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "found_contacts.hpp"
-#include "line_list.hpp"
+#include "json/json.hpp"
 #include "loaded_scene.hpp"
 #include "near_misses.hpp"
+#include "pipeline/frame_statistics.hpp"
 #include "settings.hpp"
-#include "visible_set.hpp"
 
 namespace crofton::viewer {
+
+struct CellSight {
+    std::uint32_t cell = pvs::kNoCell;
+    pvs::CellKind kind = pvs::CellKind::unknown;
+    Aabb box;
+    // Objects of the whole scene, whether in view or not.
+    std::uint64_t seen = 0, unseen = 0, hidden = 0;
+};
+[[nodiscard]] Json to_json(const CellSight& sight);
+
+// Returns the cell of the camera that culled the frame; nothing without sets, in no cell, or in a solid one.
+[[nodiscard]] std::optional<CellSight> look_up(const pvs::Pvs* pvs, const pipeline::FrameStatistics& frame);
+
+// RGBA with red in the lowest byte, as LineVertex has it.
+constexpr std::uint32_t rgba(std::uint32_t r, std::uint32_t g, std::uint32_t b, std::uint32_t a = 255) {
+    return r | g << 8 | b << 16 | a << 24;
+}
+
+class LineList {
+  public:
+    void clear(const glm::dvec3& eye) {
+        controller_ = eye;
+        vertices_.clear();
+    }
+    void segment(const glm::dvec3& a, const glm::dvec3& b, std::uint32_t color);
+    void box(const Obb& box, std::uint32_t color);
+    // The box's own axes from its centre, red, green and blue.
+    void axes(const Obb& box);
+    // Drawn to `far` where the camera sees farther.
+    void frustum(const Camera& camera, double far, std::uint32_t color);
+    void cross(const glm::dvec3& at, double size, std::uint32_t color);
+    [[nodiscard]] std::span<const render::LineVertex> vertices() const { return vertices_; }
+
+  private:
+    glm::dvec3 controller_{0.0};
+    std::vector<render::LineVertex> vertices_;
+};
+
+// The eight corners of what a camera sees up to `far`: near face left-bottom, right-bottom, left-top, right-top, then
+// far.
+[[nodiscard]] std::array<glm::dvec3, 8> view_corners(const Camera& camera, double far);
 
 // One view of several into which the depth range is split.
 struct Cascade {
