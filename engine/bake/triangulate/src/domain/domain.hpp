@@ -2,13 +2,34 @@
 // From the caller's rings to a checked subdivision: which vertices there are, which triangles lie inside.
 #pragma once
 #include <crofton/core/error.hpp>
+#include <crofton/core/memory.hpp>
 #include <crofton/geometry/mesh.hpp>
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <span>
 
 #include "domain/half_edge_mesh.hpp"
-#include "domain/spatial_order.hpp"
 #include "numbers/root_sums.hpp"
 
 namespace crofton::triangulate {
+
+// Sorts points along the Z-order curve of a grid of some 16 cells a point, those of one cell lexicographically, then by
+// index. Codes have the cell's bits interleaved, those of y in even places. Where codes first differ in bit b, a
+// vertical (odd b) or horizontal line separates the points strictly; within a cell, a slightly tilted vertical one.
+class SpatialOrder {
+  public:
+    struct Entry {
+        std::uint32_t code, index;
+    };
+    // Valid until the next call. Positions must be finite.
+    [[nodiscard]] std::span<const Entry> sort(std::span<const glm::dvec2> points);
+
+  private:
+    void encode(std::span<const glm::dvec2> points);
+    void sort_by_code();
+
+    Vector<Entry> entries_, buffer_;
+};
 
 // The constrained Delaunay triangulation of the polygon's convex hull with its inside marked.
 // Meaning of what is not a simple polygon with simple holes inside it:
