@@ -323,24 +323,19 @@ namespace Crofton {
         public ShapeHit? Cast(Placed shape, Motion motion, CastOptions options = null, QueryFilter filter = null) {
             var given = CastOptions.Data(options);
             var data = new Native.ShapeHitData { Size = Native.SizeOf<Native.ShapeHitData>() };
-            using (var memory = new Copies()) {
-                Native.PlacedData placed = memory.Of(shape);
-                Native.QueryFilterData accepted = memory.Of(filter);
-                Library.Check(Native.crofton_world_cast(Handle, ref placed, ref motion, ref given, ref accepted, ref data));
-            }
+            Ask(shape, filter, (ref Native.PlacedData placed, ref Native.QueryFilterData accepted) =>
+                Native.crofton_world_cast(Handle, ref placed, ref motion, ref given, ref accepted, ref data));
             if (data.Object.Index == uint.MaxValue) return null;
             return HitOf(data);
         }
         /// <summary>Lists the first hit of each object that a moving shape meets, in order of Time, then of index.</summary>
         public ShapeHit[] CastAll(Placed shape, Motion motion, CastOptions options = null, QueryFilter filter = null) {
             var given = CastOptions.Data(options);
-            using (var memory = new Copies())
             using (var found = Find()) {
-                Native.PlacedData placed = memory.Of(shape);
-                Native.QueryFilterData accepted = memory.Of(filter);
                 IntPtr hits;
                 UIntPtr count;
-                Library.Check(Native.crofton_world_cast_all(Handle, ref placed, ref motion, ref given, ref accepted, found));
+                Ask(shape, filter, (ref Native.PlacedData placed, ref Native.QueryFilterData accepted) =>
+                    Native.crofton_world_cast_all(Handle, ref placed, ref motion, ref given, ref accepted, found));
                 Library.Check(Native.crofton_found_shape_hits(found, out hits, out count));
                 return Library.ToArray<Native.ShapeHitData>(hits, count).Select(HitOf).ToArray();
             }
@@ -349,13 +344,11 @@ namespace Crofton {
         /// direction, 1 to 8.</summary>
         public ObjectManifold[] ContactManifolds(Placed shape, double margin = 0, uint maxPoints = 4, QueryFilter filter = null) {
             var options = new Native.ManifoldOptionsData { Size = Native.SizeOf<Native.ManifoldOptionsData>(), Margin = margin, MaxPoints = maxPoints };
-            using (var memory = new Copies())
             using (var found = Find()) {
-                Native.PlacedData placed = memory.Of(shape);
-                Native.QueryFilterData accepted = memory.Of(filter);
                 IntPtr manifolds;
                 UIntPtr count;
-                Library.Check(Native.crofton_world_manifolds(Handle, ref placed, ref options, ref accepted, found));
+                Ask(shape, filter, (ref Native.PlacedData placed, ref Native.QueryFilterData accepted) =>
+                    Native.crofton_world_manifolds(Handle, ref placed, ref options, ref accepted, found));
                 Library.Check(Native.crofton_found_manifolds(found, out manifolds, out count));
                 var result = new ObjectManifold[(int)count];
                 for (int i = 0; i < result.Length; ++i) {
@@ -366,6 +359,14 @@ namespace Crofton {
                     };
                 }
                 return result;
+            }
+        }
+        delegate int Question(ref Native.PlacedData placed, ref Native.QueryFilterData accepted);
+        static void Ask(Placed shape, QueryFilter filter, Question question) {
+            using (var memory = new Copies()) {
+                Native.PlacedData placed = memory.Of(shape);
+                Native.QueryFilterData accepted = memory.Of(filter);
+                Library.Check(question(ref placed, ref accepted));
             }
         }
         static ShapeHit HitOf(Native.ShapeHitData data) {

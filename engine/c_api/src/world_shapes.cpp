@@ -40,6 +40,19 @@ crofton_shape_hit to_c_hit(const ShapeHit& hit) {
     return result;
 }
 
+// Checks what a query of a shape that is no object asks with, and calls with the shape, the options and the filter.
+template <class Given, class Options, class Ask>
+crofton_status ask_with(const crofton_placed* probe, const Given* given, const crofton_query_filter* filter,
+                        const char* function, crofton_status (*read)(const Given*, const char*, Options&), Ask ask) {
+    QueryFilter accepted;
+    CROFTON_CHECK(to_filter(filter, function, accepted));
+    const PlacedShape placed(probe, function);
+    CROFTON_CHECK(placed.status());
+    Options options;
+    CROFTON_CHECK(read(given, function, options));
+    return ask(placed, options, accepted);
+}
+
 }  // namespace
 
 crofton_status crofton_world_cast(const crofton_world* world, const crofton_placed* probe, const crofton_motion* motion,
@@ -47,22 +60,20 @@ crofton_status crofton_world_cast(const crofton_world* world, const crofton_plac
                                   crofton_shape_hit* hit) {
     const SharedUse use(world, __func__);
     if (use.failed()) return use.status();
-    QueryFilter accepted;
-    CROFTON_CHECK(to_filter(filter, __func__, accepted));
     CROFTON_CHECK(check_growing(hit, __func__));
-    const PlacedShape placed(probe, __func__);
-    CROFTON_CHECK(placed.status());
-    convex::CastOptions wanted;
-    CROFTON_CHECK(to_cast_options(options, __func__, wanted));
-    const auto found = world->world.cast(placed.shape(), placed.pose(), to_motion(motion), wanted, accepted);
-    if (!found) return report(found.error(), __func__);
-    crofton_shape_hit result{};
-    result.object.index = CROFTON_NONE;
-    result.triangle = CROFTON_NONE;
-    result.time = std::numeric_limits<double>::infinity();
-    if (*found) result = to_c_hit(**found);
-    write_growing(result, hit);
-    return CROFTON_OK;
+    const auto ask = [&, function = __func__](const PlacedShape& placed, const convex::CastOptions& wanted,
+                                              const QueryFilter& accepted) {
+        const auto found = world->world.cast(placed.shape(), placed.pose(), to_motion(motion), wanted, accepted);
+        if (!found) return report(found.error(), function);
+        crofton_shape_hit result{};
+        result.object.index = CROFTON_NONE;
+        result.triangle = CROFTON_NONE;
+        result.time = std::numeric_limits<double>::infinity();
+        if (*found) result = to_c_hit(**found);
+        write_growing(result, hit);
+        return CROFTON_OK;
+    };
+    return ask_with(probe, options, filter, __func__, to_cast_options, ask);
 }
 
 crofton_status crofton_world_cast_all(const crofton_world* world, const crofton_placed* probe,
@@ -72,21 +83,19 @@ crofton_status crofton_world_cast_all(const crofton_world* world, const crofton_
     if (use_world.failed()) return use_world.status();
     const ExclusiveUse use(found, __func__);
     if (use.failed()) return use.status();
-    QueryFilter accepted;
-    CROFTON_CHECK(to_filter(filter, __func__, accepted));
-    const PlacedShape placed(probe, __func__);
-    CROFTON_CHECK(placed.status());
-    convex::CastOptions wanted;
-    CROFTON_CHECK(to_cast_options(options, __func__, wanted));
-    return recover(__func__, [&] {
-        Vector<ShapeHit> hits;
-        const auto done =
-            world->world.cast_all(placed.shape(), placed.pose(), to_motion(motion), wanted, hits, accepted);
-        if (!done) return report(done.error(), __func__);
-        found->clear();
-        for (const ShapeHit& hit : hits) found->shape_hits.push_back(to_c_hit(hit));
-        return CROFTON_OK;
-    });
+    const auto ask = [&, function = __func__](const PlacedShape& placed, const convex::CastOptions& wanted,
+                                              const QueryFilter& accepted) {
+        return recover(function, [&] {
+            Vector<ShapeHit> hits;
+            const auto done =
+                world->world.cast_all(placed.shape(), placed.pose(), to_motion(motion), wanted, hits, accepted);
+            if (!done) return report(done.error(), function);
+            found->clear();
+            for (const ShapeHit& hit : hits) found->shape_hits.push_back(to_c_hit(hit));
+            return CROFTON_OK;
+        });
+    };
+    return ask_with(probe, options, filter, __func__, to_cast_options, ask);
 }
 
 crofton_status crofton_world_manifolds(const crofton_world* world, const crofton_placed* probe,
@@ -96,18 +105,16 @@ crofton_status crofton_world_manifolds(const crofton_world* world, const crofton
     if (use_world.failed()) return use_world.status();
     const ExclusiveUse use(found, __func__);
     if (use.failed()) return use.status();
-    QueryFilter accepted;
-    CROFTON_CHECK(to_filter(filter, __func__, accepted));
-    const PlacedShape placed(probe, __func__);
-    CROFTON_CHECK(placed.status());
-    convex::ManifoldOptions wanted;
-    CROFTON_CHECK(to_manifold_options(options, __func__, wanted));
-    return recover(__func__, [&] {
-        found->clear();
-        const auto done =
-            world->world.contact_manifolds(placed.shape(), placed.pose(), wanted, found->manifolds, accepted);
-        return done ? CROFTON_OK : report(done.error(), __func__);
-    });
+    const auto ask = [&, function = __func__](const PlacedShape& placed, const convex::ManifoldOptions& wanted,
+                                              const QueryFilter& accepted) {
+        return recover(function, [&] {
+            found->clear();
+            const auto done =
+                world->world.contact_manifolds(placed.shape(), placed.pose(), wanted, found->manifolds, accepted);
+            return done ? CROFTON_OK : report(done.error(), function);
+        });
+    };
+    return ask_with(probe, options, filter, __func__, to_manifold_options, ask);
 }
 
 crofton_status crofton_found_shape_hits(const crofton_found* found, const crofton_shape_hit** hits, size_t* count) {
