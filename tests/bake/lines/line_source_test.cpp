@@ -46,37 +46,6 @@ TEST_SUITE("lines/line_source") {
         }
     }
 
-    TEST_CASE("crossings of nested boxes have the mean, the deviation and the empty share of their surfaces") {
-        // A line through the domain meets a closed convex box, twice, with the ratio of the two surfaces.
-        shapes::Shape shape;
-        shape.room({2, 2, 2}, {6, 5, 4}, 0);
-        shape.room({1, 1, 1}, {8, 7, 6}, 6);
-        const double inner = 2.0 * (4.0 * 3.0 + 3.0 * 2.0 + 2.0 * 4.0),
-                     outer = 2.0 * (7.0 * 6.0 + 6.0 * 5.0 + 5.0 * 7.0);
-        const auto tracer = LineTracer::build(shape.mesh);
-        REQUIRE(tracer.has_value());
-        const Aabb domain{{-1, 0, 0}, {10, 9, 8}};
-        for (const LineMethod method : kMethods) {
-            if (method == LineMethod::bundles) continue;  // lines of a bundle are not independent of each other
-            const LineSource source(domain, method, 11);
-            const double p = outer / source.surface_area(), q = inner / source.surface_area();
-            // 4 crossings with probability q, 2 with p − q, else none.
-            const double mean = 2.0 * (p + q), square = 16.0 * q + 4.0 * (p - q);
-            const VisibilityComplexity seen = visibility_complexity(*tracer, source, 200);
-            const double n = static_cast<double>(seen.lines);
-            CHECK(std::abs(seen.mean_crossings - mean) < 5.0 * 2.0 / std::sqrt(n));
-            CHECK(std::abs(seen.wasted - (1.0 - p)) < 5.0 * 0.5 / std::sqrt(n));
-            CHECK(std::abs(seen.deviation * seen.deviation - (square - mean * mean)) < 5.0 * 16.0 / std::sqrt(n));
-        }
-        // All lines of the outer box's own walls cross it twice: without the inner one the deviation is 0.
-        shapes::Shape alone;
-        alone.room({1, 1, 1}, {8, 7, 6}, 0);
-        const auto one = LineTracer::build(alone.mesh);
-        const auto seen = visibility_complexity(*one, LineSource(one->bounds(), LineMethod::walls, 3), 20);
-        CHECK(std::abs(seen.mean_crossings - 2.0) < 1e-3);
-        CHECK(seen.deviation < 0.05);
-    }
-
     TEST_CASE("on a flat scene the walls of its box waste fewer lines than its sphere") {
         const shapes::Shape shape = flat_scene();
         const auto tracer = LineTracer::build(shape.mesh);

@@ -2,7 +2,6 @@
 #include <doctest/doctest.h>
 #include <cmath>
 #include <crofton/sampling/sampling.hpp>
-#include <crofton/study/wrong_lines.hpp>
 #include <error_of.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
@@ -60,17 +59,6 @@ TEST_SUITE("sampling/global_lines") {
     TEST_CASE("lines through the ball by a disc point see every place alike") {
         CHECK(sees_every_place_alike([](Random& r) { return line_through_disc(kSphere, r.point<4>()); }));
     }
-    TEST_CASE("cosine-weighted lines from a box's surface hit every place in proportion to its area") {
-        const Aabb box{glm::dvec3(-1.0, -2.0, -0.5), glm::dvec3(3.0, 1.0, 0.5)};
-        const double r = 0.3, chance = 4.0 * pi * r * r / (2.0 * (4.0 * 3.0 + 3.0 * 1.0 + 1.0 * 4.0));
-        for (const glm::dvec3 place :
-             {glm::dvec3(1.0, -0.5, 0.0), glm::dvec3(-0.6, 0.6, 0.1), glm::dvec3(2.6, -1.6, 0.2)}) {
-            Random random(1);
-            int hits = 0;
-            for (int i = 0; i < kLines; ++i) hits += meets(line_from_box(box, random.point<5>()), place, r);
-            CHECK(plausible(hits, kLines, chance));
-        }
-    }
     TEST_CASE("a turned box and a hull of triangles are sampled like the box") {
         Random random(4);
         Obb box;
@@ -120,40 +108,5 @@ TEST_SUITE("sampling/global_lines") {
         double hits = 0.0;
         for (const Line& line : lines) hits += meets(line, kSphere.center + glm::dvec3(0.0, 1.2, 0.9), r);
         CHECK(hits / bundles == doctest::Approx(pi * r * r / cell).epsilon(0.02));
-    }
-
-    TEST_CASE("a patch of area A expects N·A/(2πR²) crossings") {
-        Random random(6);
-        const glm::dvec3 corner = kSphere.center + glm::dvec3(-0.9, 0.3, 0.2), normal = glm::dvec3(0.0, 0.6, 0.8);
-        const glm::dvec3 u(1.0, 0.0, 0.0), v(0.0, 0.8, -0.6);  // a 1.5 × 1 rectangle
-        int hits = 0;
-        for (int i = 0; i < kLines; ++i) {
-            const Line line = line_through_disc(kSphere, random.point<4>());
-            const glm::dvec3 p = line.point + line.direction * (glm::dot(corner - line.point, normal) /
-                                                                glm::dot(line.direction, normal));
-            const double s = glm::dot(p - corner, u), t = glm::dot(p - corner, v);
-            hits += s >= 0.0 && s <= 1.5 && t >= 0.0 && t <= 1.0;
-        }
-        CHECK(plausible(hits, kLines, 1.5 / (2.0 * pi * 4.0)));
-    }
-
-    TEST_CASE("the wrong densities are distinguished from the right ones") {
-        CHECK_FALSE(sees_every_place_alike(
-            [](Random& r) { return study::wrong::line_from_sphere_uniform_direction(kSphere, r.point<4>()); }));
-        const Aabb box{glm::dvec3(-1.0), glm::dvec3(1.0)};
-        Random random(7);
-        int hits = 0;
-        for (int i = 0; i < kLines; ++i)
-            hits += meets(study::wrong::line_through_two_box_points(box, random.point<6>()), glm::dvec3(0.0), 0.3);
-        CHECK_FALSE(plausible(hits, kLines, 4.0 * pi * 0.09 / 24.0));
-        // In the plane the distance to the centre should be uniform: half the lines within R/2. Bertrand's chords: a
-        // third.
-        int near = 0;
-        for (int i = 0; i < kLines; ++i) {
-            const auto line = study::wrong::line_through_two_circle_points(1.0, random.point<2>());
-            near += std::abs(line.point.x * line.direction.y - line.point.y * line.direction.x) < 0.5;
-        }
-        CHECK_FALSE(plausible(near, kLines, 0.5));
-        CHECK(plausible(near, kLines, 1.0 / 3.0));
     }
 }
