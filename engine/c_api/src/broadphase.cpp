@@ -46,8 +46,7 @@ crofton_status crofton_broadphase_destroy(crofton_broadphase* broadphase) {
 
 crofton_status crofton_broadphase_update(crofton_broadphase* broadphase, const crofton_box* boxes,
                                          const crofton_filter* filters, size_t count, const crofton_jobs* jobs) {
-    const ExclusiveUse use(broadphase, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_CHANGE(broadphase);
     CROFTON_CHECK(check_array(boxes, count, __func__));
     CROFTON_CHECK(check_jobs(jobs, __func__));
     HostJobs executor(jobs);
@@ -57,8 +56,7 @@ crofton_status crofton_broadphase_update(crofton_broadphase* broadphase, const c
 
 crofton_status crofton_broadphase_pairs(const crofton_broadphase* broadphase, uint32_t which,
                                         const crofton_pair** pairs, size_t* count) {
-    const SharedUse use(broadphase, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(broadphase);
     CROFTON_CHECK(check_pointer(pairs, __func__));
     CROFTON_CHECK(check_pointer(count, __func__));
     if (which > CROFTON_PAIRS_ENDED) return report(CROFTON_INVALID_ARGUMENT, __func__, "unknown kind of pairs");
@@ -70,8 +68,7 @@ crofton_status crofton_broadphase_pairs(const crofton_broadphase* broadphase, ui
 
 crofton_status crofton_broadphase_get_statistics(const crofton_broadphase* broadphase,
                                                  crofton_broadphase_statistics* statistics) {
-    const SharedUse use(broadphase, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(broadphase);
     CROFTON_CHECK(check_struct(statistics, __func__));
     const collide::BroadphaseStatistics& s = broadphase->broadphase.statistics();
     *statistics = {sizeof *statistics, s.bound_pairs, s.box_pairs, s.nodes_tested, s.rejected};

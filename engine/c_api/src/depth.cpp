@@ -104,8 +104,7 @@ crofton_status crofton_clustered_mesh_destroy(crofton_clustered_mesh* clustered)
 
 crofton_status crofton_clustered_mesh_serialise(const crofton_clustered_mesh* clustered, uint8_t* bytes,
                                                 size_t capacity, size_t* count) {
-    const SharedUse use(clustered, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(clustered);
     CROFTON_CHECK(check_pointer(count, __func__));
     CROFTON_CHECK(check_array(bytes, capacity, __func__));
     return recover(__func__, [&] {
@@ -129,8 +128,7 @@ crofton_status crofton_clustered_mesh_deserialise(const uint8_t* bytes, size_t c
 
 crofton_status crofton_clustered_mesh_lend(crofton_clustered_mesh* clustered, const crofton_mesh* mesh,
                                            uint32_t order) {
-    const ExclusiveUse use(clustered, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_CHANGE(clustered);
     CROFTON_CHECK(check_struct(mesh, __func__));
     CROFTON_CHECK(check_array(mesh->positions, mesh->vertex_count, __func__, 3));
     CROFTON_CHECK(check_array(mesh->indices, mesh->index_count, __func__));
@@ -145,8 +143,7 @@ crofton_status crofton_clustered_mesh_lend(crofton_clustered_mesh* clustered, co
 }
 
 crofton_status crofton_clustered_mesh_get(const crofton_clustered_mesh* clustered, crofton_clusters* clusters) {
-    const SharedUse use(clustered, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(clustered);
     CROFTON_CHECK(check_pointer(clusters, __func__));
     return recover(__func__, [&] {
         const std::lock_guard lock(clustered->mutex);
@@ -157,8 +154,7 @@ crofton_status crofton_clustered_mesh_get(const crofton_clustered_mesh* clustere
 
 crofton_status crofton_clustered_mesh_box(const crofton_clustered_mesh* clustered, size_t cluster,
                                           crofton_cluster_box* box) {
-    const SharedUse use(clustered, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(clustered);
     CROFTON_CHECK(check_pointer(box, __func__));
     if (cluster >= clustered->mesh.clusters().size())
         return report(CROFTON_OUT_OF_RANGE, __func__, "no such cluster", cluster);
@@ -200,8 +196,7 @@ crofton_status crofton_depth_culler_find_visible(crofton_depth_culler* culler, c
                                                  size_t object_count, const crofton_picture_view* picture,
                                                  const crofton_jobs* jobs, const crofton_visible_cluster** clusters,
                                                  size_t* count, crofton_depth_statistics* statistics) {
-    const ExclusiveUse use(culler, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_CHANGE(culler);
     depth::PictureView view;
     const Asked asked{objects, object_count, picture, jobs, clusters, count, statistics, __func__};
     CROFTON_CHECK(read(asked, *culler, view));
@@ -217,8 +212,7 @@ crofton_status crofton_depth_culler_find_casters(crofton_depth_culler* culler, c
                                                  const crofton_depth_receivers* receivers, const crofton_jobs* jobs,
                                                  const crofton_visible_cluster** clusters, size_t* count,
                                                  crofton_depth_statistics* statistics) {
-    const ExclusiveUse use(culler, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_CHANGE(culler);
     crofton_depth_receivers given;
     CROFTON_CHECK(read_growing(receivers, __func__, given));
     if (given.seen == culler)  // which this call has for itself
@@ -254,8 +248,7 @@ crofton_status crofton_depth_culler_find_casters(crofton_depth_culler* culler, c
 
 crofton_status crofton_depth_culler_nearness(const crofton_depth_culler* culler, uint32_t x, uint32_t y,
                                              float* nearness) {
-    const SharedUse use(culler, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(culler);
     CROFTON_CHECK(check_pointer(nearness, __func__));
     if (x >= culler->width || y >= culler->height)
         return report(CROFTON_OUT_OF_RANGE, __func__, "not a pixel of the last picture");

@@ -271,8 +271,7 @@ crofton_status crofton_shape_contacts_destroy(crofton_shape_contacts* contacts) 
 crofton_status crofton_shape_contacts_update(crofton_shape_contacts* contacts, const crofton_placed* a,
                                              const crofton_placed* b, const crofton_manifold_options* options,
                                              crofton_tracked_point** points, size_t* count, size_t* ended) {
-    const ExclusiveUse use(contacts, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_CHANGE(contacts);
     const PlacedPair pair(a, b, __func__);
     CROFTON_CHECK(pair.status());
     convex::ManifoldOptions wanted;
@@ -287,8 +286,7 @@ crofton_status crofton_shape_contacts_update(crofton_shape_contacts* contacts, c
 
 crofton_status crofton_shape_contacts_outline(crofton_shape_contacts* contacts, double length,
                                               crofton_line_visitor visit, void* user) {
-    const ExclusiveUse use(contacts, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_CHANGE(contacts);
     if (!visit) return report(CROFTON_INVALID_ARGUMENT, __func__, "the visitor is NULL");
     CROFTON_CHECK(check_length(length, "length", __func__));
     convex::outline(contacts->points, length, line_teller(visit, user));

@@ -189,8 +189,7 @@ crofton_status crofton_shape_destroy(crofton_shape* shape) {
 }
 
 crofton_status crofton_shape_get_info(const crofton_shape* shape, crofton_shape_info* info) {
-    const SharedUse use(shape, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(shape);
     CROFTON_CHECK(check_growing(info, __func__));
     const convex::Shape& asked = *shape->data->shape;
     crofton_shape_info result{};
@@ -210,8 +209,7 @@ crofton_status crofton_shape_get_info(const crofton_shape* shape, crofton_shape_
 }
 
 crofton_status crofton_shape_get_mass(const crofton_shape* shape, crofton_mass_properties* mass) {
-    const SharedUse use(shape, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(shape);
     CROFTON_CHECK(check_growing(mass, __func__));
     const auto found = convex::mass_properties(*shape->data->shape);
     if (!found) return report(found.error(), __func__);

@@ -91,8 +91,7 @@ crofton_status crofton_view_result_destroy(crofton_view_result* result) {
 
 crofton_status crofton_view_result_ids(const crofton_view_result* result, const uint32_t** ids, size_t* count,
                                        const uint8_t** verdicts, size_t* inside_count) {
-    const SharedUse use(result, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(result);
     if (result->of == Of::world) return give_seen(result->one, ids, count, verdicts, inside_count, __func__);
     if (result->of == Of::boxes) return give_seen(result->boxes, ids, count, verdicts, inside_count, __func__);
     CROFTON_CHECK(give_ids(result->many.ids(), ids, count, __func__));
@@ -102,8 +101,7 @@ crofton_status crofton_view_result_ids(const crofton_view_result* result, const 
 }
 
 crofton_status crofton_view_result_get_view(const crofton_view_result* result, size_t view, crofton_view_info* info) {
-    const SharedUse use(result, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(result);
     CROFTON_CHECK(check_view_number(*result, view, __func__));
     CROFTON_CHECK(check_growing(info, __func__));
     crofton_view_info found{};
@@ -124,8 +122,7 @@ crofton_status crofton_view_result_get_view(const crofton_view_result* result, s
 
 crofton_status crofton_view_result_depth(const crofton_view_result* result, size_t view, float* nearness,
                                          size_t capacity) {
-    const SharedUse use(result, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(result);
     CROFTON_CHECK(check_view_number(*result, view, __func__));
     const occlude::OcclusionBuffer* const buffer = buffer_of(*result, view);
     if (!buffer) return report(CROFTON_EMPTY, __func__, "the view had no occlusion", view);
@@ -140,8 +137,7 @@ crofton_status crofton_view_result_depth(const crofton_view_result* result, size
 crofton_status crofton_view_boxes(const crofton_box* boxes, const uint32_t* layer_masks, size_t count,
                                   const crofton_view_request* request, const crofton_jobs* jobs,
                                   crofton_view_result* result) {
-    const ExclusiveUse use(result, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_CHANGE(result);
     CROFTON_CHECK(check_array(boxes, count, __func__));
     BoxQuery query;
     CROFTON_CHECK(read_box_request(request, jobs, __func__, *result, query));

@@ -252,8 +252,7 @@ crofton_status crofton_world_destroy(crofton_world* world) {
 }
 
 crofton_status crofton_world_add_mesh(crofton_world* world, const crofton_mesh_data* data, crofton_world_mesh* mesh) {
-    const ExclusiveUse use(world, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_CHANGE(world);
     CROFTON_CHECK(check_pointer(mesh, __func__));
     MeshDescription description;
     CROFTON_CHECK(read_mesh_description(data, __func__, description));
@@ -262,8 +261,7 @@ crofton_status crofton_world_add_mesh(crofton_world* world, const crofton_mesh_d
 
 crofton_status crofton_world_replace_mesh(crofton_world* world, crofton_world_mesh mesh,
                                           const crofton_mesh_data* data) {
-    const ExclusiveUse use(world, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_CHANGE(world);
     MeshDescription description;
     CROFTON_CHECK(read_mesh_description(data, __func__, description));
     return status_of(world->world.replace_mesh(to_handle(mesh), description), __func__);
@@ -271,8 +269,7 @@ crofton_status crofton_world_replace_mesh(crofton_world* world, crofton_world_me
 
 crofton_status crofton_world_set_vertices(crofton_world* world, crofton_world_mesh mesh,
                                           const crofton_mesh_data* data) {
-    const ExclusiveUse use(world, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_CHANGE(world);
     crofton_mesh_data given;
     PointsView positions;
     CROFTON_CHECK(read_growing(data, __func__, given));
@@ -286,8 +283,7 @@ crofton_status crofton_world_remove_mesh(crofton_world* world, crofton_world_mes
 
 crofton_status crofton_world_add_node(crofton_world* world, const crofton_node* parent,
                                       const crofton_transform* transform, uint32_t layers, crofton_node* node) {
-    const ExclusiveUse use(world, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_CHANGE(world);
     CROFTON_CHECK(check_pointer(node, __func__));
     NodeDescription description;
     if (parent) description.parent = to_handle(*parent);
@@ -319,16 +315,14 @@ crofton_status crofton_world_set_node_transforms(crofton_world* world, const cro
 
 crofton_status crofton_world_add(crofton_world* world, const crofton_object_description* description,
                                  crofton_object* object) {
-    const ExclusiveUse use(world, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_CHANGE(world);
     CROFTON_CHECK(check_pointer(object, __func__));
     return add_one(*world, description, 0, *object, __func__);
 }
 
 crofton_status crofton_world_add_many(crofton_world* world, const crofton_object_description* descriptions,
                                       size_t count, crofton_object* objects) {
-    const ExclusiveUse use(world, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_CHANGE(world);
     if (count == 0) return CROFTON_OK;
     CROFTON_CHECK(check_pointer(objects, __func__));
     CROFTON_CHECK(check_growing(descriptions, __func__));
@@ -367,8 +361,7 @@ crofton_status crofton_world_set_boxes(crofton_world* world, const crofton_objec
 
 crofton_status crofton_world_set(crofton_world* world, crofton_object object, uint32_t members,
                                  const crofton_object_description* description) {
-    const ExclusiveUse use(world, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_CHANGE(world);
     crofton_object_description given;
     CROFTON_CHECK(read_growing(description, __func__, given));
     CROFTON_CHECK(check_members(members, __func__));
@@ -386,8 +379,7 @@ crofton_status crofton_world_set(crofton_world* world, crofton_object object, ui
 }
 
 crofton_status crofton_world_update(crofton_world* world, const crofton_jobs* jobs) {
-    const ExclusiveUse use(world, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_CHANGE(world);
     CROFTON_CHECK(check_jobs(jobs, __func__));
     HostJobs executor(jobs);
     world->serial = next_serial();  // indices may be other objects' now
@@ -395,8 +387,7 @@ crofton_status crofton_world_update(crofton_world* world, const crofton_jobs* jo
 }
 
 crofton_status crofton_world_get_statistics(const crofton_world* world, crofton_world_statistics* statistics) {
-    const SharedUse use(world, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(world);
     CROFTON_CHECK(check_growing(statistics, __func__));
     const WorldStatistics& s = world->world.statistics();
     write_growing({sizeof *statistics, s.objects, s.resting, s.moving, s.box_pairs_tested, s.contact_pairs_tested,

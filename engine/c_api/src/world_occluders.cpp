@@ -73,8 +73,7 @@ occlude::FindOptions to_find_options(const crofton_find_options& given) {
 
 crofton_status crofton_world_find_occluders(crofton_world* world, crofton_world_mesh mesh,
                                             const crofton_find_options* options) {
-    const ExclusiveUse use(world, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_CHANGE(world);
     crofton_find_options given{};
     if (options) CROFTON_CHECK(read_growing(options, __func__, given));
     return status_of(world->world.find_occluders(to_handle(mesh), to_find_options(given)), __func__);
@@ -82,8 +81,7 @@ crofton_status crofton_world_find_occluders(crofton_world* world, crofton_world_
 
 crofton_status crofton_world_set_occluders(crofton_world* world, crofton_world_mesh mesh,
                                            const crofton_occluder* occluders, size_t count) {
-    const ExclusiveUse use(world, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_CHANGE(world);
     CROFTON_CHECK(check_array(occluders, count, __func__));
     Vector<FoundOccluder> given;
     for (std::size_t i = 0; i < count; ++i) {
@@ -97,8 +95,7 @@ crofton_status crofton_world_set_occluders(crofton_world* world, crofton_world_m
 
 crofton_status crofton_world_get_occluder(const crofton_world* world, crofton_world_mesh mesh, size_t place,
                                           crofton_occluder* occluder) {
-    const SharedUse use(world, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(world);
     CROFTON_CHECK(check_growing(occluder, __func__));
     CROFTON_CHECK(check_mesh(*world, mesh, __func__));
     const auto all = world->world.occluders_of(to_handle(mesh));

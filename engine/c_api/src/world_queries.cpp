@@ -69,8 +69,7 @@ crofton_object_hit to_c_hit(const std::optional<ObjectHit>& hit) {
 }  // namespace
 
 crofton_status crofton_world_get_object(const crofton_world* world, crofton_object object, crofton_object_info* info) {
-    const SharedUse use(world, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(world);
     CROFTON_CHECK(check_growing(info, __func__));
     const auto user = world->world.user_of(to_handle(object));
     if (!user) return report(user.error(), __func__);
@@ -89,8 +88,7 @@ crofton_status crofton_world_get_object(const crofton_world* world, crofton_obje
 }
 
 crofton_status crofton_world_get_mesh(const crofton_world* world, crofton_world_mesh mesh, crofton_mesh_info* info) {
-    const SharedUse use(world, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(world);
     CROFTON_CHECK(check_growing(info, __func__));
     CROFTON_CHECK(check_mesh(*world, mesh, __func__));
     return recover(__func__, [&] {
@@ -109,8 +107,7 @@ crofton_status crofton_world_get_mesh(const crofton_world* world, crofton_world_
 }
 
 crofton_status crofton_world_contains_node(const crofton_world* world, crofton_node node, int* contains) {
-    const SharedUse use(world, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(world);
     CROFTON_CHECK(check_pointer(contains, __func__));
     *contains = world->world.contains(to_handle(node)) ? 1 : 0;
     return CROFTON_OK;
@@ -118,8 +115,7 @@ crofton_status crofton_world_contains_node(const crofton_world* world, crofton_n
 
 crofton_status crofton_world_raycast(const crofton_world* world, const crofton_ray* rays, size_t count,
                                      const crofton_query_filter* filter, crofton_object_hit* hits) {
-    const SharedUse use(world, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(world);
     QueryFilter accepted;
     CROFTON_CHECK(to_filter(filter, __func__, accepted));
     return answer_rays(rays, count, hits, __func__,
@@ -128,8 +124,7 @@ crofton_status crofton_world_raycast(const crofton_world* world, const crofton_r
 
 crofton_status crofton_world_raycast_any(const crofton_world* world, const crofton_ray* ray,
                                          const crofton_query_filter* filter, int* hit) {
-    const SharedUse use(world, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(world);
     QueryFilter accepted;
     CROFTON_CHECK(to_filter(filter, __func__, accepted));
     CROFTON_CHECK(check_pointer(ray, __func__));
@@ -150,23 +145,19 @@ crofton_status crofton_found_destroy(crofton_found* found) {
 }
 
 crofton_status crofton_found_objects(const crofton_found* found, const crofton_object_ref** objects, size_t* count) {
-    const SharedUse use(found, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(found);
     return give_list(found->objects, objects, count, __func__);
 }
 
 crofton_status crofton_found_hits(const crofton_found* found, const crofton_object_hit** hits, size_t* count) {
-    const SharedUse use(found, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(found);
     return give_list(found->hits, hits, count, __func__);
 }
 
 crofton_status crofton_world_raycast_all(const crofton_world* world, const crofton_ray* ray,
                                          const crofton_query_filter* filter, crofton_found* found) {
-    const SharedUse use_world(world, __func__);
-    if (use_world.failed()) return use_world.status();
-    const ExclusiveUse use(found, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(world);
+    CROFTON_CHANGE(found);
     QueryFilter accepted;
     CROFTON_CHECK(to_filter(filter, __func__, accepted));
     CROFTON_CHECK(check_pointer(ray, __func__));
@@ -179,10 +170,8 @@ crofton_status crofton_world_raycast_all(const crofton_world* world, const croft
 
 crofton_status crofton_world_overlap(const crofton_world* world, const crofton_query_shape* shape,
                                      const crofton_query_filter* filter, crofton_found* found) {
-    const SharedUse use_world(world, __func__);
-    if (use_world.failed()) return use_world.status();
-    const ExclusiveUse use(found, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(world);
+    CROFTON_CHANGE(found);
     QueryFilter accepted;
     CROFTON_CHECK(to_filter(filter, __func__, accepted));
     return visit_shape(shape, __func__, [&](const auto&... asked) {
@@ -194,8 +183,7 @@ crofton_status crofton_world_overlap(const crofton_world* world, const crofton_q
 
 crofton_status crofton_world_closest(const crofton_world* world, const crofton_query_shape* shape, double max_distance,
                                      const crofton_query_filter* filter, crofton_closest_object* closest) {
-    const SharedUse use(world, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(world);
     QueryFilter accepted;
     CROFTON_CHECK(to_filter(filter, __func__, accepted));
     CROFTON_CHECK(check_growing(closest, __func__));
@@ -217,14 +205,12 @@ crofton_status crofton_world_closest(const crofton_world* world, const crofton_q
 }
 
 crofton_status crofton_world_pairs(const crofton_world* world, const crofton_object_pair** pairs, size_t* count) {
-    const SharedUse use(world, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(world);
     return give_list(world->world.pairs(), pairs, count, __func__);
 }
 
 crofton_status crofton_world_contacts(const crofton_world* world, const crofton_object_contact** contacts,
                                       size_t* count) {
-    const SharedUse use(world, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(world);
     return give_list(world->world.contacts(), contacts, count, __func__);
 }

@@ -114,8 +114,7 @@ crofton_status crofton_region_destroy(crofton_region* region) {
 }
 
 crofton_status crofton_region_get_info(const crofton_region* region, crofton_region_info* info) {
-    const SharedUse use(region, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(region);
     CROFTON_CHECK(check_growing(info, __func__));
     crofton_region_info result{};
     result.object_count = region->region.object_count();
@@ -127,8 +126,7 @@ crofton_status crofton_region_get_info(const crofton_region* region, crofton_reg
 }
 
 crofton_status crofton_region_mesh_of(const crofton_region* region, uint32_t place, uint32_t* mesh) {
-    const SharedUse use(region, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(region);
     CROFTON_CHECK(check_pointer(mesh, __func__));
     if (place >= region->region.object_count())
         return report(CROFTON_OUT_OF_RANGE, __func__, "the region has no object at that place", place);
@@ -137,8 +135,7 @@ crofton_status crofton_region_mesh_of(const crofton_region* region, uint32_t pla
 }
 
 crofton_status crofton_region_clusters_of(const crofton_region* region, uint32_t mesh, crofton_clusters* clusters) {
-    const SharedUse use(region, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(region);
     CROFTON_CHECK(check_pointer(clusters, __func__));
     const depth::ClusteredMesh* const cut = region->region.clusters_of(mesh);
     if (cut == nullptr)
@@ -153,10 +150,8 @@ crofton_status crofton_region_clusters_of(const crofton_region* region, uint32_t
 
 crofton_status crofton_world_attach(crofton_world* world, const crofton_region* region, const double origin[3],
                                     crofton_attached_region* attached) {
-    const ExclusiveUse use(world, __func__);
-    if (use.failed()) return use.status();
-    const SharedUse use_of_region(region, __func__);
-    if (use_of_region.failed()) return use_of_region.status();
+    CROFTON_CHANGE(world);
+    CROFTON_READ(region);
     CROFTON_CHECK(check_pointer(origin, __func__));
     CROFTON_CHECK(check_pointer(attached, __func__));
     const auto handle = world->world.attach(region->region, {origin[0], origin[1], origin[2]});
@@ -166,15 +161,13 @@ crofton_status crofton_world_attach(crofton_world* world, const crofton_region* 
 }
 
 crofton_status crofton_world_detach(crofton_world* world, crofton_attached_region region) {
-    const ExclusiveUse use(world, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_CHANGE(world);
     return status_of(world->world.detach({region.index, region.generation}), __func__);
 }
 
 crofton_status crofton_world_object_in(const crofton_world* world, crofton_attached_region region, uint32_t place,
                                        crofton_object* object) {
-    const SharedUse use(world, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(world);
     CROFTON_CHECK(check_pointer(object, __func__));
     const auto handle = world->world.object_in({region.index, region.generation}, place);
     if (!handle) return report(handle.error(), __func__);
@@ -184,8 +177,7 @@ crofton_status crofton_world_object_in(const crofton_world* world, crofton_attac
 
 crofton_status crofton_world_place_of(const crofton_world* world, crofton_object object,
                                       crofton_attached_region* region, uint32_t* place) {
-    const SharedUse use(world, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(world);
     CROFTON_CHECK(check_pointer(region, __func__));
     CROFTON_CHECK(check_pointer(place, __func__));
     const auto found = world->world.place_of(to_handle(object));

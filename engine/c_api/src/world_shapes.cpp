@@ -58,8 +58,7 @@ crofton_status ask_with(const crofton_placed* probe, const Given* given, const c
 crofton_status crofton_world_cast(const crofton_world* world, const crofton_placed* probe, const crofton_motion* motion,
                                   const crofton_cast_options* options, const crofton_query_filter* filter,
                                   crofton_shape_hit* hit) {
-    const SharedUse use(world, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(world);
     CROFTON_CHECK(check_growing(hit, __func__));
     const auto ask = [&, function = __func__](const PlacedShape& placed, const convex::CastOptions& wanted,
                                               const QueryFilter& accepted) {
@@ -79,10 +78,8 @@ crofton_status crofton_world_cast(const crofton_world* world, const crofton_plac
 crofton_status crofton_world_cast_all(const crofton_world* world, const crofton_placed* probe,
                                       const crofton_motion* motion, const crofton_cast_options* options,
                                       const crofton_query_filter* filter, crofton_found* found) {
-    const SharedUse use_world(world, __func__);
-    if (use_world.failed()) return use_world.status();
-    const ExclusiveUse use(found, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(world);
+    CROFTON_CHANGE(found);
     const auto ask = [&, function = __func__](const PlacedShape& placed, const convex::CastOptions& wanted,
                                               const QueryFilter& accepted) {
         return recover(function, [&] {
@@ -101,10 +98,8 @@ crofton_status crofton_world_cast_all(const crofton_world* world, const crofton_
 crofton_status crofton_world_manifolds(const crofton_world* world, const crofton_placed* probe,
                                        const crofton_manifold_options* options, const crofton_query_filter* filter,
                                        crofton_found* found) {
-    const SharedUse use_world(world, __func__);
-    if (use_world.failed()) return use_world.status();
-    const ExclusiveUse use(found, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(world);
+    CROFTON_CHANGE(found);
     const auto ask = [&, function = __func__](const PlacedShape& placed, const convex::ManifoldOptions& wanted,
                                               const QueryFilter& accepted) {
         return recover(function, [&] {
@@ -118,14 +113,12 @@ crofton_status crofton_world_manifolds(const crofton_world* world, const crofton
 }
 
 crofton_status crofton_found_shape_hits(const crofton_found* found, const crofton_shape_hit** hits, size_t* count) {
-    const SharedUse use(found, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(found);
     return give_list(found->shape_hits, hits, count, __func__);
 }
 
 crofton_status crofton_found_manifolds(const crofton_found* found, const crofton_object_manifold** manifolds,
                                        size_t* count) {
-    const SharedUse use(found, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(found);
     return give_list(found->manifolds, manifolds, count, __func__);
 }

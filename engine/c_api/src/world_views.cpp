@@ -64,10 +64,8 @@ crofton_status view_many(const crofton_world& world, const crofton_view_request*
 
 crofton_status crofton_world_view(const crofton_world* world, const crofton_view_request* requests, size_t count,
                                   const crofton_jobs* jobs, crofton_view_result* result) {
-    const SharedUse use_world(world, __func__);
-    if (use_world.failed()) return use_world.status();
-    const ExclusiveUse use(result, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(world);
+    CROFTON_CHANGE(result);
     CROFTON_CHECK(check_array(requests, count, __func__));
     CROFTON_CHECK(check_jobs(jobs, __func__));
     HostJobs executor(jobs);
@@ -81,10 +79,8 @@ crofton_status crofton_world_view(const crofton_world* world, const crofton_view
 
 crofton_status crofton_view_result_list(const crofton_view_result* result, const crofton_world* world, size_t first,
                                         crofton_object_ref* objects, uint32_t* view_masks, size_t capacity) {
-    const SharedUse use(result, __func__);
-    if (use.failed()) return use.status();
-    const SharedUse use_world(world, __func__);
-    if (use_world.failed()) return use_world.status();
+    CROFTON_READ(result);
+    CROFTON_READ(world);
     CROFTON_CHECK(check_room(objects, capacity, __func__));
     CROFTON_CHECK(check_viewed(*result, *world, __func__));
     const bool is_many = result->of == Of::many_of_world;
@@ -101,10 +97,8 @@ crofton_status crofton_view_result_list(const crofton_view_result* result, const
 crofton_status crofton_view_result_occluders(const crofton_view_result* result, const crofton_world* world,
                                              const crofton_object* hidden, crofton_occluder_ref* occluders,
                                              size_t capacity, size_t* count) {
-    const SharedUse use_world(world, __func__);
-    if (use_world.failed()) return use_world.status();
-    const SharedUse use(result, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(world);
+    CROFTON_READ(result);
     CROFTON_CHECK(check_pointer(count, __func__));
     CROFTON_CHECK(check_room(occluders, capacity, __func__));
     CROFTON_CHECK(check_viewed(*result, *world, __func__));

@@ -58,8 +58,7 @@ crofton_status open_file(const char* path, const crofton_jobs* jobs, bake::FileA
 }  // namespace
 
 crofton_status crofton_scene_bake(const crofton_scene* scene, const char* path, const crofton_jobs* jobs) {
-    const SharedUse use(scene, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(scene);
     CROFTON_CHECK(check_pointer(path, __func__));
     CROFTON_CHECK(check_jobs(jobs, __func__));
     HostJobs executor(jobs);
@@ -85,16 +84,14 @@ crofton_status crofton_baked_scene_destroy(crofton_baked_scene* baked) {
 }
 
 crofton_status crofton_baked_scene_mesh_count(const crofton_baked_scene* baked, size_t* count) {
-    const SharedUse use(baked, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(baked);
     CROFTON_CHECK(check_pointer(count, __func__));
     *count = baked->scene.mesh_count();
     return CROFTON_OK;
 }
 
 crofton_status crofton_baked_scene_mesh(const crofton_baked_scene* baked, uint32_t mesh_id, crofton_baked_mesh* mesh) {
-    const SharedUse use(baked, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(baked);
     CROFTON_CHECK(check_struct(mesh, __func__));
     if (mesh_id >= baked->scene.mesh_count())
         return report(CROFTON_OUT_OF_RANGE, __func__, "there is no such mesh", mesh_id);
@@ -117,8 +114,7 @@ crofton_status crofton_baked_scene_mesh(const crofton_baked_scene* baked, uint32
 
 crofton_status crofton_baked_scene_clusters(const crofton_baked_scene* baked, uint32_t mesh_id,
                                             crofton_clustered_mesh** clustered) {
-    const SharedUse use(baked, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(baked);
     CROFTON_CHECK(check_pointer(clustered, __func__));
     if (mesh_id >= baked->scene.mesh_count())
         return report(CROFTON_OUT_OF_RANGE, __func__, "there is no such mesh", mesh_id);
@@ -129,14 +125,12 @@ crofton_status crofton_baked_scene_clusters(const crofton_baked_scene* baked, ui
 
 crofton_status crofton_baked_scene_instances(const crofton_baked_scene* baked, const crofton_baked_instance** instances,
                                              size_t* count) {
-    const SharedUse use(baked, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(baked);
     return give(baked->scene.instances(), instances, count, __func__);
 }
 
 crofton_status crofton_baked_scene_nodes(const crofton_baked_scene* baked, const crofton_baked_node** nodes,
                                          size_t* count) {
-    const SharedUse use(baked, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(baked);
     return give(baked->scene.nodes(), nodes, count, __func__);
 }

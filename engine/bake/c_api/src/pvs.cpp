@@ -49,16 +49,14 @@ crofton_status crofton_pvs_destroy(crofton_pvs* pvs) {
 }
 
 crofton_status crofton_pvs_counts(const crofton_pvs* pvs, size_t* cells, size_t* objects) {
-    const SharedUse use(pvs, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(pvs);
     if (cells) *cells = pvs->sets.cells().size();
     if (objects) *objects = pvs->sets.object_count();
     return CROFTON_OK;
 }
 
 crofton_status crofton_pvs_find_cell(const crofton_pvs* pvs, const double* eye, uint32_t* cell) {
-    const SharedUse use(pvs, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(pvs);
     CROFTON_CHECK(check_place(eye, "eye", __func__));
     CROFTON_CHECK(check_pointer(cell, __func__));
     *cell = pvs->sets.find_cell(to_vector(eye));
@@ -67,8 +65,7 @@ crofton_status crofton_pvs_find_cell(const crofton_pvs* pvs, const double* eye, 
 
 crofton_status crofton_pvs_visible(const crofton_pvs* pvs, const double* eye, uint32_t mode, const uint64_t** words,
                                    size_t* count) {
-    const SharedUse use(pvs, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(pvs);
     CROFTON_CHECK(check_place(eye, "eye", __func__));
     CROFTON_CHECK(check_pointer(words, __func__));
     CROFTON_CHECK(check_pointer(count, __func__));

@@ -101,8 +101,7 @@ crofton_status crofton_region_index_destroy(crofton_region_index* index) {
 
 crofton_status crofton_region_index_files(const crofton_region_index* index, const crofton_region_file** files,
                                           size_t* count) {
-    const SharedUse use(index, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(index);
     CROFTON_CHECK(check_pointer(files, __func__));
     CROFTON_CHECK(check_pointer(count, __func__));
     *files = index->listed.data();
@@ -113,8 +112,7 @@ crofton_status crofton_region_index_files(const crofton_region_index* index, con
 crofton_status crofton_region_index_prepare(const crofton_region_index* index, size_t place,
                                             const crofton_baked_region_options* options, const crofton_jobs* jobs,
                                             crofton_region** region) {
-    const SharedUse use(index, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(index);
     CROFTON_CHECK(check_jobs(jobs, __func__));
     CROFTON_CHECK(check_pointer(region, __func__));
     if (place >= index->files.size())

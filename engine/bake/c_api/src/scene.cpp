@@ -29,8 +29,7 @@ crofton_status crofton_scene_destroy(crofton_scene* scene) {
 }
 
 crofton_status crofton_scene_add_mesh(crofton_scene* scene, const crofton_mesh* mesh, uint32_t* mesh_id) {
-    const ExclusiveUse use(scene, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_CHANGE(scene);
     CROFTON_CHECK(check_pointer(mesh_id, __func__));
     TriangleMesh copy;
     CROFTON_CHECK(to_mesh(mesh, __func__, copy));
@@ -39,43 +38,37 @@ crofton_status crofton_scene_add_mesh(crofton_scene* scene, const crofton_mesh* 
 
 crofton_status crofton_scene_add_node(crofton_scene* scene, uint32_t parent, const crofton_transform* local,
                                       uint32_t layer_mask, uint32_t* node_id) {
-    const ExclusiveUse use(scene, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_CHANGE(scene);
     CROFTON_CHECK(check_pointer(node_id, __func__));
     const Transform transform = local ? to_transform(*local) : Transform();
     return give(scene->scene.add_node(parent, transform, layer_mask), node_id, __func__);
 }
 
 crofton_status crofton_scene_add_instance(crofton_scene* scene, uint32_t node, uint32_t mesh, uint32_t* instance_id) {
-    const ExclusiveUse use(scene, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_CHANGE(scene);
     CROFTON_CHECK(check_pointer(instance_id, __func__));
     return give(scene->scene.add_instance(node, mesh), instance_id, __func__);
 }
 
 crofton_status crofton_scene_set_local(crofton_scene* scene, uint32_t node, const crofton_transform* local) {
-    const ExclusiveUse use(scene, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_CHANGE(scene);
     CROFTON_CHECK(check_pointer(local, __func__));
     return status_of(scene->scene.set_local(node, to_transform(*local)), __func__);
 }
 
 crofton_status crofton_scene_set_layer_mask(crofton_scene* scene, uint32_t node, uint32_t layer_mask) {
-    const ExclusiveUse use(scene, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_CHANGE(scene);
     return status_of(scene->scene.set_layer_mask(node, layer_mask), __func__);
 }
 
 crofton_status crofton_scene_remove_instance(crofton_scene* scene, uint32_t instance) {
-    const ExclusiveUse use(scene, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_CHANGE(scene);
     return status_of(scene->scene.remove_instance(instance), __func__);
 }
 
 crofton_status crofton_scene_update(crofton_scene* scene, const crofton_jobs* jobs,
                                     crofton_update_statistics* statistics) {
-    const ExclusiveUse use(scene, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_CHANGE(scene);
     CROFTON_CHECK(check_jobs(jobs, __func__));
     CROFTON_CHECK(check_optional(statistics, __func__));
     HostJobs executor(jobs);
@@ -87,8 +80,7 @@ crofton_status crofton_scene_update(crofton_scene* scene, const crofton_jobs* jo
 
 crofton_status crofton_scene_boxes(const crofton_scene* scene, const crofton_box** boxes, const uint32_t** layer_masks,
                                    size_t* count) {
-    const SharedUse use(scene, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(scene);
     CROFTON_CHECK(check_pointer(boxes, __func__));
     CROFTON_CHECK(check_pointer(layer_masks, __func__));
     CROFTON_CHECK(check_pointer(count, __func__));
@@ -99,8 +91,7 @@ crofton_status crofton_scene_boxes(const crofton_scene* scene, const crofton_box
 }
 
 crofton_status crofton_scene_moved(const crofton_scene* scene, const uint32_t** instances, size_t* count) {
-    const SharedUse use(scene, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(scene);
     CROFTON_CHECK(check_pointer(instances, __func__));
     CROFTON_CHECK(check_pointer(count, __func__));
     *instances = scene->scene.moved_instances().data();

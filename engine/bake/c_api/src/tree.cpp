@@ -30,16 +30,14 @@ crofton_status crofton_tree_destroy(crofton_tree* tree) {
 }
 
 crofton_status crofton_tree_move(crofton_tree* tree, const uint32_t* items, const crofton_box* boxes, size_t count) {
-    const ExclusiveUse use(tree, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_CHANGE(tree);
     CROFTON_CHECK(check_array(items, count, __func__));
     CROFTON_CHECK(check_array(boxes, count, __func__));
     return status_of(tree->tree.move(std::span(items, count), to_boxes(boxes, count)), __func__);
 }
 
 crofton_status crofton_tree_insert(crofton_tree* tree, const crofton_box* box, uint32_t layer_mask, uint32_t* item) {
-    const ExclusiveUse use(tree, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_CHANGE(tree);
     CROFTON_CHECK(check_pointer(box, __func__));
     CROFTON_CHECK(check_pointer(item, __func__));
     const auto inserted = tree->tree.insert(to_box(box), layer_mask);
@@ -49,20 +47,17 @@ crofton_status crofton_tree_insert(crofton_tree* tree, const crofton_box* box, u
 }
 
 crofton_status crofton_tree_remove(crofton_tree* tree, uint32_t item) {
-    const ExclusiveUse use(tree, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_CHANGE(tree);
     return status_of(tree->tree.remove(item), __func__);
 }
 
 crofton_status crofton_tree_set_layer_mask(crofton_tree* tree, uint32_t item, uint32_t layer_mask) {
-    const ExclusiveUse use(tree, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_CHANGE(tree);
     return status_of(tree->tree.set_layer_mask(item, layer_mask), __func__);
 }
 
 crofton_status crofton_tree_refit(crofton_tree* tree, size_t rebuild_budget) {
-    const ExclusiveUse use(tree, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_CHANGE(tree);
     tree->tree.refit();
     if (rebuild_budget > 0) tree->tree.rebuild_step(rebuild_budget);
     return CROFTON_OK;
@@ -70,10 +65,8 @@ crofton_status crofton_tree_refit(crofton_tree* tree, size_t rebuild_budget) {
 
 crofton_status crofton_tree_view(const crofton_tree* tree, const crofton_view_request* request,
                                  const crofton_jobs* jobs, crofton_view_result* result) {
-    const SharedUse use_tree(tree, __func__);
-    if (use_tree.failed()) return use_tree.status();
-    const ExclusiveUse use(result, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(tree);
+    CROFTON_CHANGE(result);
     BoxQuery query;
     CROFTON_CHECK(read_box_request(request, jobs, __func__, *result, query));
     HostJobs executor(jobs);
@@ -83,8 +76,7 @@ crofton_status crofton_tree_view(const crofton_tree* tree, const crofton_view_re
 
 crofton_status crofton_tree_raycast(const crofton_tree* tree, const crofton_ray* rays, size_t count,
                                     uint32_t layer_mask, crofton_ray_hit* hits) {
-    const SharedUse use(tree, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(tree);
     return answer_rays(rays, count, hits, __func__, [&](const Ray& ray) {
         const auto hit = collide::raycast(ray, tree->tree, layer_mask);
         return hit ? crofton_ray_hit{hit->t, hit->item}
@@ -94,8 +86,7 @@ crofton_status crofton_tree_raycast(const crofton_tree* tree, const crofton_ray*
 
 crofton_status crofton_tree_overlap(const crofton_tree* tree, const crofton_query_shape* shape, uint32_t layer_mask,
                                     uint32_t* items, size_t capacity, size_t* found) {
-    const SharedUse use(tree, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_READ(tree);
     CROFTON_CHECK(check_room(items, capacity, __func__));
     CROFTON_CHECK(check_pointer(found, __func__));
     return visit_shape(shape, __func__, [&, function = __func__](const auto& asked, const auto&... pose) {

@@ -54,8 +54,7 @@ crofton_status crofton_triangulator_destroy(crofton_triangulator* triangulator) 
 
 crofton_status crofton_triangulate(crofton_triangulator* triangulator, const crofton_polygon* polygon, uint32_t method,
                                    crofton_triangulation* triangulation) {
-    const ExclusiveUse use(triangulator, __func__);
-    if (use.failed()) return use.status();
+    CROFTON_CHANGE(triangulator);
     CROFTON_CHECK(check_struct(triangulation, __func__));
     if (method > CROFTON_TRIANGULATE_MINIMUM_WEIGHT)
         return report(CROFTON_INVALID_ARGUMENT, __func__, "unknown method");

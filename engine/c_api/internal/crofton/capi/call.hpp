@@ -157,3 +157,12 @@ template <class Handle>
     do {                                                                    \
         if (const crofton_status s_ = (check); s_ != CROFTON_OK) return s_; \
     } while (false)
+
+// Takes a handle to the end of the block, together with other readers or alone; returns from the calling function where
+// that cannot be.
+#define CROFTON_READ(handle)                                            \
+    const ::crofton::capi::SharedUse use_of_##handle(handle, __func__); \
+    CROFTON_CHECK(use_of_##handle.status())
+#define CROFTON_CHANGE(handle)                                             \
+    const ::crofton::capi::ExclusiveUse use_of_##handle(handle, __func__); \
+    CROFTON_CHECK(use_of_##handle.status())
