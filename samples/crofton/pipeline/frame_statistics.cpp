@@ -12,47 +12,14 @@ namespace {
 
 using Column = StatisticsColumn;
 
-bool always(const FrameStatistics&) {
-    return true;
-}
-bool is_drawn(const FrameStatistics& f) {
-    return f.gpu.has_value();
-}
-bool says_what_is_seen(const FrameStatistics& f) {
-    return f.seen.has_value();
-}
-bool has_occlusion(const FrameStatistics& f) {
-    return f.occlusion.has_value();
-}
-
-#define CROFTON_COLUMN(field)                                                                 \
-    Column {                                                                                  \
-#field, [](const FrameStatistics& f) { return static_cast<double>(f.field); }, always \
+// A number that frames have where `has` holds of the frame f.
+#define CROFTON_COLUMN_IF(name, has, number)                                                      \
+    Column {                                                                                      \
+        name, [](const FrameStatistics& f) { return (has) ? static_cast<double>(number) : 0.0; }, \
+            []([[maybe_unused]] const FrameStatistics& f) { return static_cast<bool>(has); }      \
     }
-#define CROFTON_GPU_COLUMN(field)                                                                                \
-    Column {                                                                                                     \
-        "gpu_" #field, [](const FrameStatistics& f) { return f.gpu ? static_cast<double>(f.gpu->field) : 0.0; }, \
-            is_drawn                                                                                             \
-    }
-#define CROFTON_SEEN_COLUMN(name, field)                                                                  \
-    Column {                                                                                              \
-        name, [](const FrameStatistics& f) { return f.seen ? static_cast<double>(f.seen->field) : 0.0; }, \
-            says_what_is_seen                                                                             \
-    }
-
-#define CROFTON_REGIONS_COLUMN(field)                                                                         \
-    Column {                                                                                                  \
-        "regions_" #field,                                                                                    \
-            [](const FrameStatistics& f) { return f.regions ? static_cast<double>(f.regions->field) : 0.0; }, \
-            [](const FrameStatistics& f) { return f.regions.has_value(); }                                    \
-    }
-
-#define CROFTON_SHADOW_COLUMN(field)                                                                        \
-    Column {                                                                                                \
-        "shadow_" #field,                                                                                   \
-            [](const FrameStatistics& f) { return f.shadow ? static_cast<double>(f.shadow->field) : 0.0; }, \
-            [](const FrameStatistics& f) { return f.shadow.has_value(); }                                   \
-    }
+#define CROFTON_COLUMN(field) CROFTON_COLUMN_IF(#field, true, f.field)
+#define CROFTON_COLUMN_OF(part, field) CROFTON_COLUMN_IF(#part "_" #field, f.part, f.part->field)
 
 constexpr std::array kColumns = {
     CROFTON_COLUMN(instances),
@@ -63,15 +30,14 @@ constexpr std::array kColumns = {
     CROFTON_COLUMN(nodes_tested),
     CROFTON_COLUMN(triangles_submitted),
     CROFTON_COLUMN(triangles_passed),
-    CROFTON_SEEN_COLUMN("triangles_seen", triangles),
-    Column{"passed_per_seen", [](const FrameStatistics& f) { return passed_per_seen(f.triangles_passed, f.seen); },
-           says_what_is_seen},
-    CROFTON_SEEN_COLUMN("instances_seen", instances),
+    CROFTON_COLUMN_IF("triangles_seen", f.seen, f.seen->triangles),
+    CROFTON_COLUMN_IF("passed_per_seen", f.seen, passed_per_seen(f.triangles_passed, f.seen)),
+    CROFTON_COLUMN_IF("instances_seen", f.seen, f.seen->instances),
     CROFTON_COLUMN(triangles_clipped),
-    CROFTON_GPU_COLUMN(input_assembly_primitives),
-    CROFTON_GPU_COLUMN(clipping_invocations),
-    CROFTON_GPU_COLUMN(clipping_primitives),
-    CROFTON_GPU_COLUMN(samples_passed),
+    CROFTON_COLUMN_OF(gpu, input_assembly_primitives),
+    CROFTON_COLUMN_OF(gpu, clipping_invocations),
+    CROFTON_COLUMN_OF(gpu, clipping_primitives),
+    CROFTON_COLUMN_OF(gpu, samples_passed),
     CROFTON_COLUMN(colliding_pairs),
     CROFTON_COLUMN(pairs_tested),
     CROFTON_COLUMN(separated_by_face_a),
@@ -83,57 +49,36 @@ constexpr std::array kColumns = {
     CROFTON_COLUMN(cull_us),
     CROFTON_COLUMN(collide_us),
     CROFTON_COLUMN(draw_us),
-    CROFTON_REGIONS_COLUMN(attached),
-    CROFTON_REGIONS_COLUMN(came),
-    CROFTON_REGIONS_COLUMN(went),
-    CROFTON_REGIONS_COLUMN(attach_us),
-    CROFTON_REGIONS_COLUMN(wait_us),
+    CROFTON_COLUMN_OF(regions, attached),
+    CROFTON_COLUMN_OF(regions, came),
+    CROFTON_COLUMN_OF(regions, went),
+    CROFTON_COLUMN_OF(regions, attach_us),
+    CROFTON_COLUMN_OF(regions, wait_us),
 };
-
-#define CROFTON_OCCLUSION_COLUMN(field)                                                                           \
-    Column {                                                                                                      \
-        "occlusion_" #field,                                                                                      \
-            [](const FrameStatistics& f) { return f.occlusion ? static_cast<double>(f.occlusion->field) : 0.0; }, \
-            has_occlusion                                                                                         \
-    }
-#define CROFTON_OCCLUSION_GPU_COLUMN(field)                                                                  \
-    Column {                                                                                                 \
-        "occlusion_gpu_" #field,                                                                             \
-            [](const FrameStatistics& f) {                                                                   \
-                return f.occlusion && f.occlusion->gpu ? static_cast<double>(f.occlusion->gpu->field) : 0.0; \
-            },                                                                                               \
-            [](const FrameStatistics& f) { return f.occlusion && f.occlusion->gpu; }                         \
-    }
 
 constexpr std::array kOcclusionColumns = {
-    CROFTON_OCCLUSION_COLUMN(visible),
-    CROFTON_OCCLUSION_COLUMN(occluders),
-    CROFTON_OCCLUSION_COLUMN(triangles_submitted),
-    CROFTON_OCCLUSION_COLUMN(triangles_passed),
-    Column{"occlusion_passed_per_seen",
-           [](const FrameStatistics& f) {
-               return f.occlusion ? passed_per_seen(f.occlusion->triangles_passed, f.seen) : 0.0;
-           },
-           [](const FrameStatistics& f) { return f.occlusion && f.seen; }},
-    CROFTON_OCCLUSION_COLUMN(triangles_clipped),
-    CROFTON_OCCLUSION_GPU_COLUMN(clipping_primitives),
-    CROFTON_OCCLUSION_GPU_COLUMN(samples_passed),
-    CROFTON_OCCLUSION_COLUMN(occlude_us),
-    CROFTON_OCCLUSION_COLUMN(draw_us),
-    CROFTON_SHADOW_COLUMN(casters),
-    CROFTON_SHADOW_COLUMN(triangles),
-    CROFTON_SHADOW_COLUMN(casters_listed),
-    CROFTON_SHADOW_COLUMN(triangles_listed),
-    CROFTON_SHADOW_COLUMN(find_us),
+    CROFTON_COLUMN_OF(occlusion, visible),
+    CROFTON_COLUMN_OF(occlusion, occluders),
+    CROFTON_COLUMN_OF(occlusion, triangles_submitted),
+    CROFTON_COLUMN_OF(occlusion, triangles_passed),
+    CROFTON_COLUMN_IF("occlusion_passed_per_seen", f.occlusion&& f.seen,
+                      passed_per_seen(f.occlusion->triangles_passed, f.seen)),
+    CROFTON_COLUMN_OF(occlusion, triangles_clipped),
+    CROFTON_COLUMN_IF("occlusion_gpu_clipping_primitives", f.occlusion&& f.occlusion->gpu,
+                      f.occlusion->gpu->clipping_primitives),
+    CROFTON_COLUMN_IF("occlusion_gpu_samples_passed", f.occlusion&& f.occlusion->gpu, f.occlusion->gpu->samples_passed),
+    CROFTON_COLUMN_OF(occlusion, occlude_us),
+    CROFTON_COLUMN_OF(occlusion, draw_us),
+    CROFTON_COLUMN_OF(shadow, casters),
+    CROFTON_COLUMN_OF(shadow, triangles),
+    CROFTON_COLUMN_OF(shadow, casters_listed),
+    CROFTON_COLUMN_OF(shadow, triangles_listed),
+    CROFTON_COLUMN_OF(shadow, find_us),
 };
 
-#undef CROFTON_OCCLUSION_COLUMN
-#undef CROFTON_OCCLUSION_GPU_COLUMN
+#undef CROFTON_COLUMN_OF
 #undef CROFTON_COLUMN
-#undef CROFTON_GPU_COLUMN
-#undef CROFTON_SEEN_COLUMN
-#undef CROFTON_REGIONS_COLUMN
-#undef CROFTON_SHADOW_COLUMN
+#undef CROFTON_COLUMN_IF
 
 bool drawn(std::span<const FrameStatistics> frames) {
     return std::any_of(frames.begin(), frames.end(), [](const FrameStatistics& f) { return f.gpu.has_value(); });
