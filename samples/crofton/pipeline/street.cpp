@@ -31,7 +31,7 @@ std::string remark_on(const FreeSpace& space, const assets::SceneSource& source,
 
 // The regions around the middle of all objects, nearest first: as many as have kMostObjects, at least one.
 std::vector<const bake::RegionFile*> regions_in_the_middle(std::span<const bake::RegionFile> index) {
-    constexpr std::uint64_t kMostObjects = 10'000;
+    constexpr std::uint64_t kMostObjects = 4'000;
     glm::dvec3 middle(0.0);
     double objects = 0.0;
     for (const bake::RegionFile& region : index) objects += static_cast<double>(region.objects);

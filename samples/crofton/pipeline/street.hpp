@@ -28,8 +28,8 @@ struct Street {
 // updated.
 [[nodiscard]] Street street_of(const assets::SceneSource& source, const Aabb& focus);
 
-// A street through the regions in the middle of a world, of which it reads a few: those that together have some ten
-// thousand objects, or one. Errors: as load_scene.
+// A street through the regions in the middle of a world, of which it reads a few: those that together have 4,000
+// objects, or one. Errors: as load_scene.
 [[nodiscard]] Result<Street> street_of_regions(const std::string& folder, std::span<const bake::RegionFile> index,
                                                const assets::ReadLimits& limits);
 
