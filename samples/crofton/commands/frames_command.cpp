@@ -284,13 +284,7 @@ class FramesRun {
         focus_ = pipeline::focus_of(source_->scene);
         pipeline::Street street;
         if (options_.camera == "street") street = pipeline::street_of(*source_, focus_);
-        if (!street.remark.empty()) print_to(stderr, "crofton: %s\n", printable(street.remark).c_str());
-        pipeline::PathOptions path_options{options_.camera, options_.frames.value_or(0), options_.seed, aspect,
-                                           options_.read.limits};
-        street.set(path_options);
-        auto path = pipeline::make_camera_path(path_options, focus_, street.walk);
-        if (!path) return path.error();
-        path_ = std::move(*path);
+        if (auto path = make_path(street, aspect); !path) return path;
         pipeline_options_ = {*bounds, *mode, true};
         pipeline_options_.one_sided = source_->one_sided;
         pipeline_options_.clusters = pipeline::take_clusters(*source_);
@@ -304,6 +298,18 @@ class FramesRun {
         if (!frames) return frames.error();
         pipeline_.emplace(std::move(*frames));
         return prepare_drawing(*size);
+    }
+
+    // The camera's path; a street is walked, if that is what is asked for.
+    Result<void> make_path(const pipeline::Street& street, double aspect) {
+        if (!street.remark.empty()) print_to(stderr, "crofton: %s\n", printable(street.remark).c_str());
+        pipeline::PathOptions options{options_.camera, options_.frames.value_or(0), options_.seed, aspect,
+                                      options_.read.limits};
+        street.set(options);
+        auto path = pipeline::make_camera_path(options, focus_, street.walk);
+        if (!path) return path.error();
+        path_ = std::move(*path);
+        return {};
     }
 
     // The flight begins when the regions near its first place are loaded.
@@ -335,10 +341,13 @@ class FramesRun {
         if (!opened) return opened.error();
         regions_.emplace(std::move(*opened));
         focus_ = regions_->stream().bounds();
-        auto path = pipeline::make_camera_path(
-            {options_.camera, options_.frames.value_or(0), options_.seed, aspect, options_.read.limits}, focus_, {});
-        if (!path) return path.error();
-        path_ = std::move(*path);
+        pipeline::Street street;
+        if (options_.camera == "street") {
+            auto found = pipeline::street_of_regions(options_.scene, regions_->stream().index(), options_.read.limits);
+            if (!found) return found.error();
+            street = std::move(*found);
+        }
+        if (auto path = make_path(street, aspect); !path) return path;
         make_list();
         return start_drawing(size, 0.0);
     }
@@ -346,7 +355,7 @@ class FramesRun {
     [[nodiscard]] SceneFacts scene_facts() const {
         if (regions_) {
             const std::uint64_t count = regions_->stream().object_count();
-            return {std::filesystem::path(options_.scene).lexically_normal().string(), count, count, 0};
+            return {std::filesystem::path(options_.scene).lexically_normal().string(), count, count};
         }
         return {source_->name, source_->scene.node_count(), source_->scene.instance_count(),
                 assets::instanced_triangles(source_->scene)};

@@ -97,7 +97,7 @@ Result<void> write_results(const FramesOutput& output, const SceneFacts& scene, 
                           {{"name", scene.name},
                            {"nodes", scene.nodes},
                            {"instances", scene.instances},
-                           {"triangles", scene.triangles}}},
+                           {"triangles", scene.triangles ? Json(*scene.triangles) : Json(nullptr)}}},
                          {"frames", Json::array()},
                          {"summary", pipeline::summary_json(frames, verification)}};
         for (const FrameStatistics& frame : frames) document["frames"].push_back(to_json(frame, output.ids));

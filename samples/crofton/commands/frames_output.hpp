@@ -25,7 +25,8 @@ struct ImageSize {
 
 struct SceneFacts {
     std::string name;
-    std::uint64_t nodes = 0, instances = 0, triangles = 0;
+    std::uint64_t nodes = 0, instances = 0;
+    std::optional<std::uint64_t> triangles = {};  // nothing for regions: their files are not all read
 };
 
 [[nodiscard]] Result<void> make_picture_folder(const std::string& folder);

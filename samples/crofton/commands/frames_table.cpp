@@ -16,18 +16,23 @@ double ratio(double a, double b) {
     return b > 0.0 ? a / b : 0.0;
 }
 
-Whole triangles_seen(const FrameStatistics& f) {
-    return f.seen ? Whole{f.seen->triangles} : Whole{0};
+// Dashes where nothing was drawn, which says what is seen.
+std::string triangles_seen(const FrameStatistics& f) {
+    return f.seen ? formatted("%llu", Whole{f.seen->triangles}) : "-";
+}
+
+std::string met_for_each_seen(const FrameStatistics& f, std::uint64_t passed) {
+    return f.seen ? formatted("%.1f", pipeline::passed_per_seen(passed, f.seen)) : "-";
 }
 
 std::string row_with_occlusion(const FrameStatistics& f) {
     const pipeline::OccludedFrame& o = *f.occlusion;
-    return formatted("%6u   %7llu %7llu   %9llu %9llu   %9llu %9llu %8llu %7.1f %7.1f   %8.2f %8.2f %6.1f %10.2f\n",
-                     f.index, Whole{f.visible}, Whole{o.visible}, Whole{f.triangles_submitted},
-                     Whole{o.triangles_submitted}, Whole{f.triangles_passed}, Whole{o.triangles_passed},
-                     triangles_seen(f), pipeline::passed_per_seen(f.triangles_passed, f.seen),
-                     pipeline::passed_per_seen(o.triangles_passed, f.seen), frame_ms(f), frame_ms_with_occlusion(f),
-                     ratio(frame_ms(f), frame_ms_with_occlusion(f)), 1e-3 * o.occlude_us);
+    return formatted("%6u   %7llu %7llu   %9llu %9llu   %9llu %9llu %8s %7s %7s   %8.2f %8.2f %6.1f %10.2f\n", f.index,
+                     Whole{f.visible}, Whole{o.visible}, Whole{f.triangles_submitted}, Whole{o.triangles_submitted},
+                     Whole{f.triangles_passed}, Whole{o.triangles_passed}, triangles_seen(f).c_str(),
+                     met_for_each_seen(f, f.triangles_passed).c_str(), met_for_each_seen(f, o.triangles_passed).c_str(),
+                     frame_ms(f), frame_ms_with_occlusion(f), ratio(frame_ms(f), frame_ms_with_occlusion(f)),
+                     1e-3 * o.occlude_us);
 }
 
 // No ratio where it is not less.
@@ -106,9 +111,9 @@ double frame_ms_with_occlusion(const FrameStatistics& f) {
 }
 
 std::string table_header(const SceneFacts& scene, bool occlusion) {
-    const std::string title =
-        formatted("%s: %llu nodes, %llu instances, %llu triangles\n\n", printable(scene.name).c_str(),
-                  Whole{scene.nodes}, Whole{scene.instances}, Whole{scene.triangles});
+    const std::string title = formatted("%s: %llu nodes, %llu instances", printable(scene.name).c_str(),
+                                        Whole{scene.nodes}, Whole{scene.instances}) +
+                              (scene.triangles ? formatted(", %llu triangles\n\n", Whole{*scene.triangles}) : "\n\n");
     if (!occlusion)
         return title +
                " frame   visible straddle   improper     nodes  submitted     passed     seen   ratio    clipped  "
@@ -124,10 +129,10 @@ std::string table_header(const SceneFacts& scene, bool occlusion) {
 
 std::string table_row(const FrameStatistics& f) {
     if (f.occlusion) return row_with_occlusion(f);
-    return formatted("%6u %9llu %8llu %10llu %9llu %10llu %10llu %8llu %7.1f %10llu %6llu %9.0f %8.0f %8.0f %9.0f\n",
+    return formatted("%6u %9llu %8llu %10llu %9llu %10llu %10llu %8s %7s %10llu %6llu %9.0f %8.0f %8.0f %9.0f\n",
                      f.index, Whole{f.visible}, Whole{f.straddling}, Whole{f.improper}, Whole{f.nodes_tested},
-                     Whole{f.triangles_submitted}, Whole{f.triangles_passed}, triangles_seen(f),
-                     pipeline::passed_per_seen(f.triangles_passed, f.seen),
+                     Whole{f.triangles_submitted}, Whole{f.triangles_passed}, triangles_seen(f).c_str(),
+                     met_for_each_seen(f, f.triangles_passed).c_str(),
                      Whole{f.gpu ? f.gpu->clipping_primitives : f.triangles_clipped}, Whole{f.colliding_pairs},
                      f.update_us, f.cull_us, f.collide_us, f.draw_us);
 }

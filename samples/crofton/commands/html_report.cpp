@@ -120,7 +120,7 @@ std::string summary(const ReportContents& c) {
     const auto mean = [&](auto value) { return readable(mean_of(c.frames, value)); };
     std::string html = "<div class=\"tiles\">";
     html += tile("instances", readable(static_cast<double>(c.scene.instances)));
-    html += tile("triangles", readable(static_cast<double>(c.scene.triangles)));
+    if (c.scene.triangles) html += tile("triangles", readable(static_cast<double>(*c.scene.triangles)));
     html += tile("visible instances, mean", mean([](const auto& f) { return f.visible; }));
     html += tile("triangles submitted, mean", mean([](const auto& f) { return f.triangles_submitted; }));
     html += tile("triangles that meet the frustum, mean", mean([](const auto& f) { return f.triangles_passed; }));

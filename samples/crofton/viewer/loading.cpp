@@ -254,7 +254,13 @@ Result<void> Session::load_replay() {
     path.aspect = static_cast<double>(options_.width) / options_.height;
     path.limits = options_.scene.limits;
     pipeline::Street street;
-    if (path.kind == "street") street = pipeline::street_of(loaded_->source(), loaded_->focus());
+    if (path.kind == "street" && loaded_->regions() == nullptr) {
+        street = pipeline::street_of(loaded_->source(), loaded_->focus());
+    } else if (path.kind == "street") {
+        auto found = pipeline::street_of_regions(request_.source, loaded_->regions()->stream().index(), path.limits);
+        if (!found) return std::move(found.error());
+        street = std::move(*found);
+    }
     if (!street.remark.empty()) report({ErrorCode::unsupported, kNoItem, street.remark});
     street.set(path);
     auto made =

@@ -2,6 +2,7 @@
 // Stored trees with one fault each, refused for that fault. The layout is written down here a second time.
 #include <doctest/doctest.h>
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/boxtree/radius_range.hpp>
@@ -10,7 +11,9 @@
 #include <error_of.hpp>
 #include <oracle/random_boxes.hpp>
 #include <string_view>
+#include <thread>
 
+#include "../../counting_memory.hpp"
 #include "../../ranges.hpp"
 
 using namespace crofton;
@@ -153,6 +156,39 @@ TEST_SUITE("boxtree/stored") {
         REQUIRE(back.has_value());
         const auto bytes = back->serialise();
         CHECK(test::ranges::equal(bytes, stored.bytes()));
+    }
+
+    TEST_CASE("reading a stored tree stops at whichever question is answered yes, and leaves no memory") {
+        const Vector<std::byte> bytes = BoxTree::build(oracle::random_crowd(60000, 0.0, 91).boxes).value().serialise();
+        struct Asked {
+            int count = 0, stop_at = 0;
+            double share = 0.0;
+        };
+        const auto read = [&](Asked& asked) {
+            return BoxTree::deserialise(
+                bytes, boxtree::Trust::contents,
+                [](void* user, double share) {
+                    Asked& its = *static_cast<Asked*>(user);
+                    std::this_thread::sleep_for(std::chrono::milliseconds(6));  // it is asked again after 5
+                    CHECK(share >= its.share);
+                    its.share = share;
+                    return ++its.count == its.stop_at;
+                },
+                &asked);
+        };
+        Asked all;
+        CHECK(test::ranges::equal(read(all).value().serialise(), bytes));
+        CHECK(all.count > 20);
+        CHECK(all.share <= 1.0);
+        for (int stop_at = 1; stop_at <= all.count; stop_at += 1 + all.count / 12) {
+            testing::CountingMemory memory;
+            {
+                Asked asked{.stop_at = stop_at};
+                CHECK(error_of(read(asked)).code == ErrorCode::cancelled);
+                CHECK(asked.count == stop_at);
+            }
+            CHECK(memory.bytes_in_use() == 0);
+        }
     }
 
     TEST_CASE("bytes too many or too few, other versions, byte orders and element sizes are refused") {

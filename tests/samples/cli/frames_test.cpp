@@ -313,6 +313,25 @@ TEST_SUITE("cli/frames") {
         CHECK(says(run.out, "instances"));
     }
 
+    TEST_CASE(
+        "a street through regions is at a person's height between houses, and says nothing of what was not drawn") {
+        const std::string folder = scratch().file("street_regions");
+        REQUIRE(run_cli("bake town --instances 1500 --regions 4x4 --folder " + folder).status == 0);
+        const CliRun table = run_cli("frames " + folder + " --camera street --frames 2 --no-draw --occlude");
+        REQUIRE_MESSAGE(table.status == 0, table.err);
+        CHECK(says(table.out, " instances\n"));
+        CHECK_FALSE(says(table.out, " 0 triangles"));
+        CHECK(says(table.out, "        -       -       - "));  // triangles seen, and met for each
+        const json walk = run_cli("frames " + folder + " --camera street --frames 24 --no-draw --json -").json();
+        CHECK(walk["scene"]["triangles"].is_null());
+        for (const json& frame : walk["frames"]) {
+            CHECK(frame["camera"]["position"][1].get<double>() > 1.6);
+            CHECK(frame["camera"]["position"][1].get<double>() < 5.0);  // a meadow's hill
+            CHECK(frame["visible"].get<int>() > 20);
+            CHECK(frame["triangles_seen"].is_null());
+        }
+    }
+
     TEST_CASE("a flight over regions counts what the whole scene's frames count, on any number of threads") {
         const std::string folder = scratch().file("flight"), whole = scratch().file("flight.crofton"),
                           path = scratch().file("flight.json"),

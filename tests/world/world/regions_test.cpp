@@ -7,6 +7,7 @@
 #include <counting_memory.hpp>
 #include <crofton/convex/query.hpp>
 #include <crofton/crofton.hpp>
+#include <crofton/world/object_manifold.hpp>
 #include <error_of.hpp>
 #include <map>
 #include <oracle/random_boxes.hpp>
@@ -344,6 +345,49 @@ void check_closest(const TwoWorlds& worlds, const std::optional<ClosestObject>& 
     if (worlds.number({found->object, found->user}) != expected->user) return;
     CHECK(found->on_shape == expected->on_shape);
     CHECK(found->on_object == expected->on_object);
+    CHECK(found->triangle == expected->triangle);
+    CHECK(found->child == expected->child);
+}
+
+// Of one World, with the objects' numbers in place of their indices, in order of these.
+std::vector<std::vector<double>> hits_of(const TwoWorlds& worlds, const Vector<ShapeHit>& hits) {
+    std::vector<std::vector<double>> rows;
+    for (const ShapeHit& h : hits)
+        rows.push_back({static_cast<double>(worlds.number({h.object, h.user})), h.time, h.normal.x, h.normal.y,
+                        h.normal.z, h.point.x, h.point.y, h.point.z, static_cast<double>(h.triangle),
+                        static_cast<double>(h.child), h.distance, h.resolved ? 1.0 : 0.0});
+    std::sort(rows.begin(), rows.end());
+    return rows;
+}
+
+std::vector<std::vector<double>> manifolds_of(const TwoWorlds& worlds, const Vector<ObjectManifold>& found) {
+    std::vector<std::vector<double>> rows;
+    for (const auto& [object, user, m] : found) {
+        rows.push_back(
+            {static_cast<double>(worlds.number({object, user})), m.depth, m.normal.x, m.normal.y, m.normal.z});
+        for (int i = 0; i < m.count; ++i)
+            for (const double x :
+                 {m.points[i].position.x, m.points[i].position.y, m.points[i].position.z, m.points[i].depth})
+                rows.back().push_back(x);
+    }
+    std::sort(rows.begin(), rows.end());
+    return rows;
+}
+
+// A shape that is no object: every hit of its cast, and where it touches.
+void check_probe(const TwoWorlds& worlds, const convex::Shape& shape, const RigidTransform& pose,
+                 const convex::Motion& motion, std::uint32_t layers) {
+    Vector<ShapeHit> hits, expected_hits;
+    worlds.with.cast_all(shape, pose, motion, {}, hits, {layers}).value();
+    worlds.single.cast_all(shape, pose, motion, {}, expected_hits, {layers}).value();
+    CHECK(hits_of(worlds, hits) == hits_of(worlds, expected_hits));
+    CHECK(std::is_sorted(hits.begin(), hits.end(), [](const ShapeHit& a, const ShapeHit& b) {
+        return a.time != b.time ? a.time < b.time : a.object.index < b.object.index;
+    }));
+    Vector<ObjectManifold> found, expected;
+    worlds.with.contact_manifolds(shape, pose, {.margin = 0.1}, found, {layers}).value();
+    worlds.single.contact_manifolds(shape, pose, {.margin = 0.1}, expected, {layers}).value();
+    CHECK(manifolds_of(worlds, found) == manifolds_of(worlds, expected));
 }
 
 void check_shapes(const TwoWorlds& worlds, NearMisses& random, const glm::dvec3& near) {
@@ -376,6 +420,7 @@ void check_shapes(const TwoWorlds& worlds, NearMisses& random, const glm::dvec3&
                   worlds.single.closest(shape, pose, 5.0, {layers}));
     const double u = random.number(-4.0, 4.0), v = random.number(-4.0, 4.0), w = random.number(-4.0, 4.0);
     const convex::Motion motion{.velocity = {u, v, w}};
+    check_probe(worlds, shape, pose, motion, layers);
     const auto hit = worlds.with.cast(shape, pose, motion, {}, {layers}).value(),
                expected_hit = worlds.single.cast(shape, pose, motion, {}, {layers}).value();
     REQUIRE(hit.has_value() == expected_hit.has_value());
@@ -386,6 +431,8 @@ void check_shapes(const TwoWorlds& worlds, NearMisses& random, const glm::dvec3&
     CHECK(hit->normal == expected_hit->normal);
     CHECK(hit->point == expected_hit->point);
     CHECK(hit->distance == expected_hit->distance);
+    CHECK(hit->triangle == expected_hit->triangle);
+    CHECK(hit->child == expected_hit->child);
 }
 
 void check_names(const TwoWorlds& worlds) {

@@ -104,7 +104,8 @@ Result<BakedScene> BakedScene::from_memory(std::span<const std::byte> file, Exec
             if (!each) return each.error();
         if (const auto good = baked.check_meshes(); !good) return good.error();
         if (stop.is_raised(0.5)) return detail::cancelled("baked scene");
-        auto tree = read_tree(*reader);
+        detail::PartOfStop reading_tree{should_stop, stop_user, 0.5, 0.7};
+        auto tree = read_tree(*reader, detail::PartOfStop::ask, &reading_tree);
         if (!tree) return tree.error();
         baked.tree_.emplace(std::move(*tree));
         if (stop.is_raised(0.7)) return detail::cancelled("baked scene");

@@ -13,10 +13,10 @@ Result<void> add_tree(std::span<const Obb> boxes, std::span<const std::uint32_t>
     return {};
 }
 
-Result<boxtree::BoxTree> read_tree(const Reader& reader) {
+Result<boxtree::BoxTree> read_tree(const Reader& reader, StopCallback should_stop, void* stop_user) {
     const auto bytes = reader.section<std::byte>("tree");
     if (!bytes) return bytes.error();
-    return boxtree::BoxTree::deserialise(*bytes, boxtree::Trust::contents);
+    return boxtree::BoxTree::deserialise(*bytes, boxtree::Trust::contents, should_stop, stop_user);
 }
 
 }  // namespace crofton::bake

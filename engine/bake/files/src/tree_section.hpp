@@ -9,6 +9,6 @@ namespace crofton::bake {
 // Builds the tree over the boxes and adds it.
 [[nodiscard]] Result<void> add_tree(std::span<const Obb> boxes, std::span<const std::uint32_t> layer_masks,
                                     Writer& writer, Executor& executor, boxtree::Orientation orientation);
-[[nodiscard]] Result<boxtree::BoxTree> read_tree(const Reader& reader);
+[[nodiscard]] Result<boxtree::BoxTree> read_tree(const Reader& reader, StopCallback should_stop, void* stop_user);
 
 }  // namespace crofton::bake

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Trees as byte strings.
+#include <algorithm>
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/boxtree/rebuilder.hpp>
 #include <crofton/boxtree/structure.hpp>
 #include <crofton/core/recovery.hpp>
+#include <crofton/core/stop_signal.hpp>
 #include <cstring>
 
 namespace crofton::boxtree {
@@ -86,8 +88,13 @@ Vector<std::byte> BoxTree::serialise() const {
     return bytes;
 }
 
-Result<BoxTree> BoxTree::deserialise(std::span<const std::byte> bytes, Trust trust) {
+Result<BoxTree> BoxTree::deserialise(std::span<const std::byte> bytes, Trust trust, StopCallback should_stop,
+                                     void* stop_user) {
     return detail::recover([&]() -> Result<BoxTree> {
+        constexpr double kCopied = 0.5;  // of the time
+        detail::PartOfStop copying{should_stop, stop_user, 0.0, kCopied};
+        detail::PartOfStop checking{should_stop, stop_user, kCopied, 1.0};
+        detail::StopSignal stop_copy(detail::PartOfStop::ask, &copying), stop_check(detail::PartOfStop::ask, &checking);
         const auto damaged = [](const char* why) {
             return fail(ErrorCode::parse, kNoItem, {"stored box tree: ", why});
         };
@@ -115,15 +122,25 @@ Result<BoxTree> BoxTree::deserialise(std::span<const std::byte> bytes, Trust tru
         if (bytes.size() != expected_size) return damaged("cut short, or too long");
         std::size_t at = sizeof(header);
         TreeStorage::arrays(items, structure, header, [&](auto& array, std::uint64_t count) {
-            array.resize(count);
-            if (count > 0) std::memcpy(static_cast<void*>(data_of(array)), bytes.data() + at, count * sizeof(array[0]));
-            at += count * sizeof(array[0]);
+            constexpr std::uint64_t kBetweenQuestions = 1 << 14;  // elements: some MB of new memory
+            array.reserve(count);
+            for (std::uint64_t done = 0; done < count;) {
+                if (stop_copy.is_raised(static_cast<double>(at) / static_cast<double>(bytes.size()))) return;
+                const std::uint64_t piece = std::min(count - done, kBetweenQuestions), size = piece * sizeof(array[0]);
+                array.resize(done + piece);
+                std::memcpy(static_cast<void*>(data_of(array) + done), bytes.data() + at, size);
+                done += piece;
+                at += size;
+            }
         });
+        if (stop_copy.was_raised()) return detail::cancelled("box tree");
         structure.reset_marks();
         find_detached(items, structure);
         if (auto valid = measure::validate(criterion); !valid) return valid.error();
-        if (auto valid = boxtree::validate(structure, trust); !valid)
-            return fail(ErrorCode::parse, valid.error().item, {"stored ", valid.error().message});
+        if (auto valid = boxtree::validate(structure, trust, &stop_check); !valid)
+            return stop_check.was_raised()
+                       ? valid.error()
+                       : fail(ErrorCode::parse, valid.error().item, {"stored ", valid.error().message});
         return tree;
     });
 }

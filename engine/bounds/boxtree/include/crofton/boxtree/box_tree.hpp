@@ -103,9 +103,10 @@ class BoxTree {
     [[nodiscard]] Result<void> validate(StopCallback should_stop = nullptr, void* stop_user = nullptr) const;
 
     // Returns bytes from which deserialise() makes an equal tree, on machines of the same byte order. Errors: damaged
-    // bytes.
+    // bytes; cancelled, by the callback.
     [[nodiscard]] Vector<std::byte> serialise() const;
-    [[nodiscard]] static Result<BoxTree> deserialise(std::span<const std::byte> bytes, Trust trust = Trust::nothing);
+    [[nodiscard]] static Result<BoxTree> deserialise(std::span<const std::byte> bytes, Trust trust = Trust::nothing,
+                                                     StopCallback should_stop = nullptr, void* stop_user = nullptr);
 
     // Indexed by ItemId. Ids are below boxes().size(), those of removed items included.
     [[nodiscard]] std::span<const Obb> boxes() const;
