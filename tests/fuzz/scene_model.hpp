@@ -142,6 +142,7 @@ class LivingScene {
                 return plain.remove_instance(instance);
             case 1:
                 plain.instances[instance].mesh = pick(in, plain.mesh_boxes);
+                plain.instances[instance].has_other_mesh = true;
                 return demand(scene.set_instance_mesh(instance, plain.instances[instance].mesh).has_value(),
                               "set_instance_mesh");
             default:
@@ -167,6 +168,7 @@ class LivingScene {
             demand(scene.set_vertices(mesh, positions).has_value(), "set_vertices");
         }
         plain.mesh_boxes[mesh] = scene.mesh_box(mesh);
+        for (auto& [id, instance] : plain.instances) instance.has_other_mesh |= instance.mesh == mesh;
     }
 };
 

@@ -22,8 +22,8 @@ class PlainScene {
         scene::NodeId node;
         scene::MeshId mesh;
         std::uint32_t mask;
-        bool is_new = true;
-        Transform place = {};  // as of the last update
+        bool is_new = true, has_other_mesh = false;  // since the last update; the second: or one that has changed
+        Transform place = {};                        // as of the last update
     };
     struct Answer {
         std::optional<Obb> box;
@@ -71,8 +71,9 @@ class PlainScene {
     [[nodiscard]] bool settle(Instance& instance, const Answer& answer, const Obb& before, const Obb& now) const {
         const bool carried =
             instance.place.linear != answer.place.linear || instance.place.translation != answer.place.translation;
-        const bool moved = instance.is_new || carried || std::memcmp(&before, &now, sizeof now) != 0;
-        instance.is_new = false;
+        const bool moved =
+            instance.is_new || instance.has_other_mesh || carried || std::memcmp(&before, &now, sizeof now) != 0;
+        instance.is_new = instance.has_other_mesh = false;
         instance.place = answer.place;
         return moved;
     }

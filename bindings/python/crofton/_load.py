@@ -20,16 +20,16 @@ def load_all(source):
     warning that names it. Raises crofton.Error for a file that cannot be read.
     """
     if isinstance(source, dict):
-        return _of_geojson(source, "GeoJSON")
+        return _tell_coarse(_of_geojson(source, "GeoJSON"), "GeoJSON")
     path = os.fsdecode(source)
     if os.path.splitext(path)[1].lower() in (".json", ".geojson"):
-        return _of_geojson(_read_json(path), path)
+        return _tell_coarse(_of_geojson(_read_json(path), path), path)
     meshes, left_out = _crofton._load(path)
     for text in left_out:
         warnings.warn(f"{path}: {text}", stacklevel=2)
     if not meshes:
         raise _error("empty", f"{path}: there are no triangles")
-    return meshes
+    return _tell_coarse(meshes, path)
 
 
 def load(source):
@@ -51,6 +51,18 @@ def merge(meshes):
     if all(mesh.colors is not None for mesh in meshes):
         colors = np.concatenate([mesh.colors for mesh in meshes])
     return Mesh(np.concatenate([mesh.positions for mesh in meshes]), np.concatenate(indices), colors=colors)
+
+
+def _tell_coarse(meshes, where):
+    """The meshes; warns of the first so far out that rounding its vertices to float changes its shape."""
+    for number, mesh in enumerate(meshes):
+        low, high = mesh.positions.min(axis=0).astype("f8"), mesh.positions.max(axis=0).astype("f8")
+        step = float(np.spacing(np.abs(mesh.positions).max()))
+        if step > 1e-5 * (high - low).max():
+            warnings.warn(f"{where}: mesh {number} ({mesh.name!r}) is so far from the origin that its vertices, which are "
+                          f"floats, are rounded to {step:.1g}; move the file's coordinates towards 0", stacklevel=3)
+            break
+    return meshes
 
 
 def _error(code, message, item=None):

@@ -122,6 +122,7 @@ std::string in_python(std::string_view message) {
     constexpr std::pair<std::string_view, std::string_view> kNames[] = {
         {"the object is a bound: set_bound moves it", "the object is a box: set_boxes moves it"},
         {"the time budget is negative", "seconds is negative"},
+        {"; holes are a material of cells", ""},
         {"; replace_mesh takes any number", "; for another number add another mesh"},
         {"convex_hull: ", "hull: "},
         {"find_occluders: ", "occluders: "},

@@ -2,6 +2,7 @@
 import json
 import math
 import struct
+import warnings
 
 import numpy as np
 import pytest
@@ -214,6 +215,21 @@ def test_geojson_as_a_dict_and_as_a_file(tmp_path):
     path = tmp_path / "map.geojson"
     path.write_text(json.dumps(data))
     assert crofton.load(path).area == 47
+
+
+def test_a_mesh_too_far_out_for_floats_is_told_of(tmp_path):
+    path = tmp_path / "survey.obj"
+    path.write_text("v 500000 5400000 0\nv 500002 5400000 0\nv 500000 5400002 1\nf 1 2 3\n")
+    with pytest.warns(UserWarning, match=r"survey.obj: mesh 0 .* rounded to 0.5; move"):
+        crofton.load(path)
+    ring = [[500000, 5400000], [500002, 5400000], [500000, 5400002], [500000, 5400000]]
+    with pytest.warns(UserWarning, match="GeoJSON: mesh 0 .* rounded to 0.5"):
+        crofton.load({"type": "Polygon", "coordinates": [ring]})
+    path.write_text("v 500000 5400000 0\nv 900000 5400000 0\nv 500000 5800000 1\nf 1 2 3\n")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        crofton.load(path)
+
 
 
 @pytest.mark.parametrize(

@@ -60,6 +60,8 @@ class Converter {
             if (!name || *name != part.name) {
                 roots.push_back(nodes.size());
                 nodes.push_back({{"name", part.name}, {"mesh", meshes.size()}});
+                if (const glm::dvec3& o = file_.origin; o != glm::dvec3(0.0))
+                    nodes.back()["translation"] = {o.x, o.y, o.z};
                 meshes.push_back({{"name", part.name}, {"primitives", Json::array()}});
             }
             name = &part.name;
@@ -75,7 +77,7 @@ class Converter {
              {std::pair("materials", &materials_), {"textures", &textures_}, {"images", &images_}})
             if (!list->empty()) root[key] = std::move(*list);
         document_.warnings = file_.warnings;
-        document_.warnings.insert(document_.warnings.end(), file_.odd_faces.begin(), file_.odd_faces.end());
+        document_.warnings.insert(document_.warnings.end(), file_.odd_lines.begin(), file_.odd_lines.end());
         document_.limits = file_.limits;
         document_.bytes_read = file_.bytes_read;
         take_in_images(document_, folder);
@@ -126,7 +128,7 @@ class Converter {
         const auto [entry, added] = batch.known.try_emplace({position, texcoord, normal}, next);
         batch.indices.push_back(entry->second);
         if (!added) return;
-        batch.positions.emplace_back(file_.positions[position]);
+        batch.positions.emplace_back(file_.positions[position] - file_.origin);
         if (attributes & kColor) batch.colors.push_back(file_.colors[position]);
         if (attributes & kNormal) batch.normals.emplace_back(glm::normalize(glm::dvec3(file_.normals[normal])));
         // glTF's images begin at the top.

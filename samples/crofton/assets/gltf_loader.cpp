@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "assets/file.hpp"
+#include "assets/float_origin.hpp"
 #include "assets/gltf_color.hpp"
 #include "assets/gltf_compression.hpp"
 #include "assets/gltf_document.hpp"
@@ -51,17 +52,14 @@ struct ShapeMeshes {
     glm::dvec3 origin{0.0};  // of a skinned one: where it stands in the world
 };
 
-// Far from the origin floats are coarse, so that a skinned mesh gets an origin of its own there.
+// A skinned mesh gets an origin of its own, as its vertices are those of the world.
 glm::dvec3 origin_of(std::span<const glm::dvec3> positions) {
     glm::dvec3 low = positions[0], high = low;
     for (const glm::dvec3& p : positions) {
         low = glm::min(low, p);
         high = glm::max(high, p);
     }
-    const glm::dvec3 middle = 0.5 * (low + high), size = high - low;
-    const double extent = std::max({size.x, size.y, size.z}),
-                 distance = std::max({std::abs(middle.x), std::abs(middle.y), std::abs(middle.z)});
-    return distance > 64.0 * extent && distance < 1e15 ? glm::round(middle) : glm::dvec3(0.0);
+    return float_origin(low, high);
 }
 
 class GltfReader {

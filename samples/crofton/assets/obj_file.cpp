@@ -13,6 +13,7 @@
 
 #include "assets/face_triangles.hpp"
 #include "assets/file.hpp"
+#include "assets/float_origin.hpp"
 #include "assets/text_lines.hpp"
 #include "srgb.hpp"
 
@@ -45,30 +46,50 @@ std::string_view without_comment(std::string_view line) {
     return line.substr(0, line.find('#'));
 }
 
-// The last word of a line, behind options that begin with "-".
-std::string last_word(std::string_view line) {
+std::string_view trimmed(std::string_view text) {
+    while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+    while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+    return text;
+}
+
+// Returns a name, which may have blanks, without what a comment would be. "Material #25" is a name, too.
+std::string_view short_name(std::string_view name) {
+    for (std::size_t i = name.find('#'); i != std::string_view::npos; i = name.find('#', i + 1))
+        if (i == 0 || is_blank(name[i - 1])) return trimmed(name.substr(0, i));
+    return trimmed(name);
+}
+
+// A texture's file, whose name may have blanks; behind options, which begin with "-", the last word.
+std::string_view texture_file(std::string_view line) {
+    line = trimmed(line);
+    if (line.empty() || line.front() != '-') return line;
     std::string_view last;
     for (std::string_view word = next_word(line); !word.empty(); word = next_word(line)) last = word;
-    return std::string(last);
+    return last;
 }
 
 // Kd, Ke and map_Kd by material name; lines that make no sense are skipped, a material is not worth losing the shape
-// for.
+// for. A material is also known by its short name, unless another one has that.
 void read_materials(std::string_view text, Materials& materials) {
-    std::string name;
+    std::vector<Surface*> named{&materials[""]};
     TextLines lines(text);
     for (std::string_view line; lines.next(line);) {
         const std::string_view key = next_word(line);
-        if (key == "newmtl") materials[name = std::string(next_word(line))];
-        if (key == "map_Kd") materials[name].texture = last_word(line);
+        if (key == "newmtl") {
+            const std::string whole(trimmed(line));
+            named = {&materials[whole]};
+            const auto [entry, added] = materials.try_emplace(std::string(short_name(whole)));
+            if (added) named.push_back(&entry->second);
+        }
+        if (key == "map_Kd")
+            for (Surface* surface : named) surface->texture = texture_file(line);
         glm::vec3 color;
         if ((key != "Kd" && key != "Ke") || !parse(next_word(line), color.x) || !parse(next_word(line), color.y) ||
             !parse(next_word(line), color.z))
             continue;
-        if (key == "Ke")
-            materials[name].emission = color;
-        else
-            materials[name].color = {linear_from_srgb(color.x), linear_from_srgb(color.y), linear_from_srgb(color.z)};
+        const glm::vec3 linear(linear_from_srgb(color.x), linear_from_srgb(color.y), linear_from_srgb(color.z));
+        for (Surface* surface : named)
+            (key == "Ke" ? surface->emission : surface->color) = key == "Ke" ? color : linear;
     }
 }
 
@@ -122,21 +143,26 @@ class ObjReader {
             else if (key == "f" || key == "fo")  // an old name of it
                 done = read_face_or_keep(without_comment(line));
             else if (key == "o" || key == "g")
-                start_part(std::string(next_word(line)));
+                start_part(std::string(short_name(line)));
             else if (key == "usemtl")
-                use_material(next_word(line));
+                use_material(trimmed(line));
             else if (key == "mtllib")
                 done = load_libraries(line);
-            else if (file_.unknown_line.empty() && !is_other_keyword(key))
+            else if (!is_other_keyword(key) && unknown_lines_++ == 0)
                 file_.unknown_line =
                     "; " + line_name() + " begins with '" + std::string(key.substr(0, 40)) + "', which is no keyword";
             if (auto goes_on = leave_out(std::move(done)); !goes_on) return in_file(path_, "", goes_on.error());
         }
         if (auto done = read_kept_faces(); !done) return in_file(path_, "", done.error());
         if (!bad_vertices_.empty()) drop_bad_vertices();
+        find_origin();
         if (unnamed_ > 0) file_.warnings.push_back(std::to_string(unnamed_) + " more lines make no sense: left out");
+        if (unknown_lines_ > 0)
+            file_.odd_lines.push_back(
+                file_.unknown_line.substr(2) + ": left out" +
+                (unknown_lines_ > 1 ? ", and " + std::to_string(unknown_lines_ - 1) + " more" : std::string()));
         if (unnamed_fans_ > 0)
-            file_.odd_faces.push_back(std::to_string(unnamed_fans_) +
+            file_.odd_lines.push_back(std::to_string(unnamed_fans_) +
                                       " more faces cross themselves or have no area: cut as fans");
         if (dangling_ > 0)
             file_.warnings.push_back(std::to_string(dangling_) +
@@ -315,8 +341,8 @@ class ObjReader {
     }
 
     void note_fan() {
-        if (file_.odd_faces.size() < kMostWarnings)
-            file_.odd_faces.push_back(line_name() +
+        if (file_.odd_lines.size() < kMostWarnings)
+            file_.odd_lines.push_back(line_name() +
                                       ": face: crosses itself or has no area: cut as a fan from its first corner");
         else
             ++unnamed_fans_;
@@ -336,6 +362,16 @@ class ObjReader {
         file_.colors.resize(kept);
         for (ObjFile::Part& part : file_.parts)
             for (std::uint32_t& index : part.indices) index = number[index];
+    }
+
+    void find_origin() {
+        glm::dvec3 low(std::numeric_limits<double>::max()), high = -low;
+        for (const ObjFile::Part& part : file_.parts)
+            for (const std::uint32_t index : part.indices) {
+                low = glm::min(low, file_.positions[index]);
+                high = glm::max(high, file_.positions[index]);
+            }
+        if (triangles_ > 0) file_.origin = float_origin(low, high);
     }
 
     static void add_corner(ObjFile::Part& part, const Corner& corner) {
@@ -365,7 +401,8 @@ class ObjReader {
 
     void use_material(std::string_view name) {
         start_part(file_.parts.back().name);
-        const auto found = materials_.find(name);
+        auto found = materials_.find(name);
+        if (found == materials_.end()) found = materials_.find(name = short_name(name));
         const Surface surface = found == materials_.end() ? Surface{} : found->second;
         ObjFile::Part& part = file_.parts.back();
         part.color = surface.color;
@@ -410,7 +447,7 @@ class ObjReader {
     TextLines lines_;
     ObjOptions options_;
     Deadline deadline_;
-    std::size_t dangling_ = 0, unnamed_ = 0, unnamed_fans_ = 0, libraries_ = 0;
+    std::size_t dangling_ = 0, unnamed_ = 0, unnamed_fans_ = 0, unknown_lines_ = 0, libraries_ = 0;
     std::uint64_t triangles_ = 0;
     std::size_t line_number_ = 0;
     std::vector<std::uint32_t> bad_vertices_;  // ascending

@@ -22,19 +22,22 @@ struct ObjFile {
         std::string name;
         glm::vec3 color{0.62f, 0.6f, 0.56f};  // linear
         glm::vec3 emission{0.0f};             // Ke, as it stands
-        std::string material;                 // as usemtl has it
+        std::string material;                 // as its library has it
         std::string texture;                  // map_Kd's file, as it stands; empty: none
         std::vector<std::uint32_t> indices;   // three a triangle, into positions
         // As many as indices, into texcoords and normals; kNone where the corner has none, both empty where none has.
         std::vector<std::uint32_t> texcoord_indices, normal_indices;
     };
-    std::vector<glm::dvec3> positions;   // in the file's order, used by faces or not; finite
-    std::vector<glm::vec3> colors;       // one a position; negative red where the file gives none
-    std::vector<glm::vec2> texcoords;    // v upwards, as in the file
-    std::vector<glm::vec3> normals;      // of any length
-    std::vector<Part> parts;             // at least one; any may be without faces
-    std::vector<std::string> warnings;   // material libraries, texture coordinates and normals that are not there
-    std::vector<std::string> odd_faces;  // faces that cross themselves or have no area, and so are fans
+    std::vector<glm::dvec3> positions;  // in the file's order, used by faces or not; finite
+    // What floats of the faces' vertices should be relative to: 0, unless the faces are far out.
+    glm::dvec3 origin{0.0};
+    std::vector<glm::vec3> colors;      // one a position; negative red where the file gives none
+    std::vector<glm::vec2> texcoords;   // v upwards, as in the file
+    std::vector<glm::vec3> normals;     // of any length
+    std::vector<Part> parts;            // at least one; any may be without faces
+    std::vector<std::string> warnings;  // material libraries, texture coordinates and normals that are not there
+    // Faces that cross themselves or have no area, and so are fans; the first line whose keyword is none.
+    std::vector<std::string> odd_lines;
     // Names the first line whose keyword is none, for messages of what is missing then; "; line …", or empty.
     std::string unknown_line;
     ReadLimits limits;             // that it was read with

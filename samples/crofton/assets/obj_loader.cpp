@@ -20,7 +20,7 @@ TriangleMesh mesh_of(const ObjFile& file, const ObjFile::Part& part, std::vector
     for (const std::uint32_t old : part.indices) {
         if (new_index[old] == kUnused) {
             new_index[old] = static_cast<std::uint32_t>(mesh.positions.size());
-            mesh.positions.push_back(glm::vec3(file.positions[old]));
+            mesh.positions.push_back(glm::vec3(file.positions[old] - file.origin));
             mesh.colors.push_back(file.colors[old].x < 0.0f ? part.color : file.colors[old]);
         }
         mesh.indices.push_back(new_index[old]);
@@ -35,9 +35,9 @@ Result<SceneSource> load_obj(const std::string& path, const LoadOptions& options
     auto read = read_obj(path, {.largest = kMaxCoordinate, .limits = options.limits, .leave_out = !options.strict});
     if (!read) return read.error();
     ObjFile& file = *read;
-    file.warnings.insert(file.warnings.end(), file.odd_faces.begin(), file.odd_faces.end());
+    file.warnings.insert(file.warnings.end(), file.odd_lines.begin(), file.odd_lines.end());
     SceneSource source{file_name(path), scene::Scene({options.criterion}), {}, {}, std::move(file.warnings), {}};
-    const auto root = source.scene.add_node(scene::kNone, {}, ~0u, source.name);
+    const auto root = source.scene.add_node(scene::kNone, {glm::dmat3(1.0), file.origin}, ~0u, source.name);
     if (!root) return in_file(path, "", root.error());
     std::vector<std::uint32_t> new_index(file.positions.size(), ~std::uint32_t{0});
     for (const ObjFile::Part& part : file.parts) {
@@ -55,7 +55,7 @@ Result<SceneSource> load_obj(const std::string& path, const LoadOptions& options
     if (source.scene.instance_count() == 0)
         return fail(ErrorCode::empty, kNoItem,
                     path + ": holds no faces, so there is nothing to draw" + file.unknown_line +
-                        (source.warnings.empty() ? "" : ": " + source.warnings.front()));
+                        (source.warnings.empty() || !file.unknown_line.empty() ? "" : ": " + source.warnings.front()));
     return source;
 }
 

@@ -101,17 +101,27 @@ Result<RigidTransform> pose_of(const std::string& argument) {
     return pose;
 }
 
-Result<mesh::MeshTree> tree_of(const std::string& path, const ReadOptions& options, double& milliseconds) {
-    const auto mesh = load_mesh(path, options);
-    if (!mesh) return mesh.error();
+// The pose of B in A's frame, for vertices that are relative to an origin each.
+RigidTransform between_origins(const glm::dvec3& of_a, const RigidTransform& pose, const glm::dvec3& of_b) {
+    return {pose.rotation, pose.rotation * of_b - of_a + pose.translation};
+}
+
+struct PlacedTree {
+    mesh::MeshTree tree;
+    glm::dvec3 origin;
+};
+
+Result<PlacedTree> tree_of(const std::string& path, const ReadOptions& options, double& milliseconds) {
+    const auto loaded = load_mesh(path, options);
+    if (!loaded) return loaded.error();
     const auto start = Clock::now();
-    auto tree = mesh::MeshTree::build(*mesh);
+    auto tree = mesh::MeshTree::build(loaded->mesh);
     milliseconds += milliseconds_since(start);
     if (!tree) return fail(tree.error().code, tree.error().item, path + ": " + tree.error().message);
     if (!tree->rejected().empty())
         print_to(stderr, "crofton: %s: %zu bad triangles left out, the first is %u\n", printable(path).c_str(),
                  tree->rejected().size(), tree->rejected()[0]);
-    return tree;
+    return PlacedTree{std::move(*tree), loaded->origin};
 }
 
 struct Answer {
@@ -140,20 +150,21 @@ Answer ask(const std::string& mode, const mesh::MeshTree& a, const mesh::MeshTre
     return answer;
 }
 
-Json document_of(const Answer& answer) {
+// Points are relative to `origin`.
+Json document_of(const Answer& answer, const glm::dvec3& origin) {
     Json document{{"hit", answer.hit}, {"pairs", Json::array()}, {"contacts", Json::array()}, {"depth", answer.depth}};
     for (const mesh::MeshContact& c : answer.contacts) {
         document["pairs"].push_back({c.triangles.first, c.triangles.second});
         document["contacts"].push_back({{"triangles", {c.triangles.first, c.triangles.second}},
-                                        {"position", array_of(0.5 * (c.segment.begin + c.segment.end))},
-                                        {"begin", array_of(c.segment.begin)},
-                                        {"end", array_of(c.segment.end)},
+                                        {"position", array_of(origin + 0.5 * (c.segment.begin + c.segment.end))},
+                                        {"begin", array_of(origin + c.segment.begin)},
+                                        {"end", array_of(origin + c.segment.end)},
                                         {"normal", array_of(c.normal)}});
     }
     document["distance"] = answer.distance >= 0.0 ? Json(answer.distance) : Json(nullptr);
     if (answer.distance >= 0.0) {
-        document["nearest"] = {{"on_a", array_of(answer.nearest.on_a)},
-                               {"on_b", array_of(answer.nearest.on_b)},
+        document["nearest"] = {{"on_a", array_of(origin + answer.nearest.on_a)},
+                               {"on_b", array_of(origin + answer.nearest.on_b)},
                                {"triangles", {answer.nearest.triangles.first, answer.nearest.triangles.second}}};
     }
     document["contained"] = name_of(answer.contained);
@@ -178,15 +189,15 @@ int run_shapes(const CollideRequest& request, const RigidTransform& pose) {
     if (!b) return report_error("", b.error());
     if (const auto valid = convex::validate_pose(pose); !valid) return report_error("--pose", valid.error());
     const convex::Shape shape_a = a->shape(), shape_b = b->shape();
-    const RigidTransform origin;
+    const RigidTransform rest, between = between_origins(a->origin, pose, b->origin);
     ShapeAnswer answer;
     if (request.mode == "cast") {
-        auto cast = ask_cast({shape_a, origin}, {shape_b, pose}, {*velocity, *spin, shape_b.bounds().center()},
-                             request.duration);
+        auto cast = ask_cast({shape_a, rest}, {shape_b, between}, {*velocity, *spin, shape_b.bounds().center()},
+                             request.duration, a->origin);
         if (!cast) return report_error("", cast.error());
         answer = std::move(*cast);
     } else {
-        answer = ask_hulls(request.mode, {shape_a, origin}, {shape_b, pose});
+        answer = ask_hulls(request.mode, {shape_a, rest}, {shape_b, between}, a->origin);
     }
     if (request.hulls) {
         answer.document["hulls"] = Json::array();
@@ -213,10 +224,11 @@ int run_collide(const CollideRequest& request) {
     const auto b = tree_of(request.b, request.read, build);
     if (!b) return report_error("", b.error());
     const auto start = Clock::now();
-    Answer answer = ask(request.mode, *a, *b, *pose);
+    const RigidTransform between = between_origins(a->origin, *pose, b->origin);
+    Answer answer = ask(request.mode, a->tree, b->tree, between);
     const double query = milliseconds_since(start);
     if (answer.hit && request.mode == "all")
-        answer.depth = mesh::separating_motion(*a, *b, *pose, answer.contacts).depth;
+        answer.depth = mesh::separating_motion(a->tree, b->tree, between, answer.contacts).depth;
     if (request.json_path != "-") {
         print_to(stdout, "%s", answer.hit ? "hit" : "no hit");
         if (answer.contained != mesh::Containment::none || request.mode == "contain")
@@ -227,7 +239,7 @@ int run_collide(const CollideRequest& request) {
         print_to(stdout, "  (build %.3f ms, query %.3f ms)\n", build, query);
     }
     if (request.json_path.empty()) return kSuccess;
-    Json document = document_of(answer);
+    Json document = document_of(answer, a->origin);
     document["milliseconds"] = {{"build", build}, {"query", query}};
     if (const auto written = write_json(request.json_path, document); !written)
         return report_error("", written.error());

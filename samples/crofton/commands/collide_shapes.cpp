@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "assets/float_origin.hpp"
 #include "mesh_file.hpp"
 
 namespace crofton::cli {
@@ -33,15 +34,23 @@ Result<FileShape> load_shape(const std::string& path, bool as_hull, int max_vert
     if (as_hull) {
         const auto points = load_points(path, options);
         if (!points) return points.error();
-        const std::vector<glm::vec3> floats(points->begin(), points->end());
+        glm::dvec3 low = (*points)[0], high = low;
+        for (const glm::dvec3& p : *points) {
+            low = glm::min(low, p);
+            high = glm::max(high, p);
+        }
+        made.origin = assets::float_origin(low, high);
+        std::vector<glm::vec3> floats;
+        for (const glm::dvec3& p : *points) floats.emplace_back(p - made.origin);
         auto hull = convex::Hull::build(floats, {.max_vertices = max_vertices});
         if (!hull) return named(hull.error());
         made.hull = std::move(*hull);
         return made;
     }
-    const auto mesh = load_mesh(path, options);
-    if (!mesh) return mesh.error();
-    auto tree = mesh::MeshTree::build(*mesh);
+    const auto loaded = load_mesh(path, options);
+    if (!loaded) return loaded.error();
+    made.origin = loaded->origin;
+    auto tree = mesh::MeshTree::build(loaded->mesh);
     if (!tree) return named(tree.error());
     made.mesh = std::move(*tree);
     if (auto shape = convex::Shape::mesh(*made.mesh); !shape) return named(shape.error());
@@ -62,7 +71,8 @@ Result<glm::dvec3> vector_of(const std::string& option, const std::string& text)
     return value;
 }
 
-ShapeAnswer ask_hulls(const std::string& mode, const convex::ShapeAtPose& a, const convex::ShapeAtPose& b) {
+ShapeAnswer ask_hulls(const std::string& mode, const convex::ShapeAtPose& a, const convex::ShapeAtPose& b,
+                      const glm::dvec3& origin) {
     ShapeAnswer answer;
     const bool hit = convex::intersects(a, b);
     answer.document["hit"] = hit;
@@ -71,7 +81,7 @@ ShapeAnswer ask_hulls(const std::string& mode, const convex::ShapeAtPose& a, con
         const convex::Distance d = convex::distance(a, b);
         answer.document["distance"] = d.distance;
         answer.document["bounds"] = {d.lower, d.upper};
-        answer.document["nearest"] = {{"on_a", numbers(d.on_a)}, {"on_b", numbers(d.on_b)}};
+        answer.document["nearest"] = {{"on_a", numbers(origin + d.on_a)}, {"on_b", numbers(origin + d.on_b)}};
         answer.sentence += text_of(", distance %.9g, proven between %.17g and %.17g", d.distance, d.lower, d.upper);
     }
     if (mode == "all") {
@@ -82,7 +92,7 @@ ShapeAnswer ask_hulls(const std::string& mode, const convex::ShapeAtPose& a, con
         answer.document["normal"] = numbers(p.normal);
         Json contacts = Json::array();
         for (int i = 0; i < m.count; ++i)
-            contacts.push_back({{"position", numbers(m.points[i].position)},
+            contacts.push_back({{"position", numbers(origin + m.points[i].position)},
                                 {"depth", m.points[i].depth},
                                 {"on_a", feature_of(m.points[i].on_a)},
                                 {"on_b", feature_of(m.points[i].on_b)}});
@@ -94,7 +104,7 @@ ShapeAnswer ask_hulls(const std::string& mode, const convex::ShapeAtPose& a, con
 }
 
 Result<ShapeAnswer> ask_cast(const convex::ShapeAtPose& a, const convex::ShapeAtPose& b, const convex::Motion& motion,
-                             double duration) {
+                             double duration, const glm::dvec3& origin) {
     const auto impact = convex::cast(a, {}, b, motion, {.duration = duration});
     if (!impact) return impact.error();
     constexpr const char* kNames[] = {"miss", "hit", "unresolved"};
@@ -108,12 +118,12 @@ Result<ShapeAnswer> ask_cast(const convex::ShapeAtPose& a, const convex::ShapeAt
         return answer;
     }
     answer.document["normal"] = numbers(impact->normal);
-    answer.document["on_a"] = numbers(impact->on_a);
-    answer.document["on_b"] = numbers(impact->on_b);
+    answer.document["on_a"] = numbers(origin + impact->on_a);
+    answer.document["on_b"] = numbers(origin + impact->on_b);
     answer.document["distance"] = impact->distance;
     answer.sentence = impact->result == convex::CastResult::hit
-                          ? text_of("hit at %.9g, at (%.6g, %.6g, %.6g)", impact->time, impact->on_a.x, impact->on_a.y,
-                                    impact->on_a.z)
+                          ? text_of("hit at %.9g, at (%.9g, %.9g, %.9g)", impact->time, origin.x + impact->on_a.x,
+                                    origin.y + impact->on_a.y, origin.z + impact->on_a.z)
                           : text_of("no hit before %.9g; later is not known", impact->time);
     return answer;
 }

@@ -15,6 +15,7 @@ namespace crofton::cli {
 struct FileShape {
     std::optional<convex::Hull> hull;
     std::optional<mesh::MeshTree> mesh;
+    glm::dvec3 origin{0.0};  // as PlacedMesh
     [[nodiscard]] convex::Shape shape() const {
         return hull ? convex::Shape::hull(*hull) : convex::Shape::mesh(*mesh).value();
     }
@@ -29,11 +30,11 @@ struct ShapeAnswer {
     std::string sentence;
     Json document;
 };
-// `mode` is any, all or distance.
-[[nodiscard]] ShapeAnswer ask_hulls(const std::string& mode, const convex::ShapeAtPose& a,
-                                    const convex::ShapeAtPose& b);
+// `mode` is any, all or distance. Points of the answer are `origin` farther out than the shapes.
+[[nodiscard]] ShapeAnswer ask_hulls(const std::string& mode, const convex::ShapeAtPose& a, const convex::ShapeAtPose& b,
+                                    const glm::dvec3& origin);
 // B moves. Errors: of convex::cast.
 [[nodiscard]] Result<ShapeAnswer> ask_cast(const convex::ShapeAtPose& a, const convex::ShapeAtPose& b,
-                                           const convex::Motion& motion, double duration);
+                                           const convex::Motion& motion, double duration, const glm::dvec3& origin);
 
 }  // namespace crofton::cli

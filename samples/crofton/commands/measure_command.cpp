@@ -111,8 +111,9 @@ void hull_rows(std::span<const glm::dvec3> points, const ConvexHull& hull, const
 }
 
 Result<void> run_measure(const MeasureOptions& options) {
-    const auto mesh = load_mesh(options.file, options.read);
-    if (!mesh) return mesh.error();
+    const auto loaded = load_mesh(options.file, options.read);
+    if (!loaded) return loaded.error();
+    const TriangleMesh* const mesh = &loaded->mesh;  // measures are the same anywhere
     const std::vector<glm::dvec3> points(mesh->positions.begin(), mesh->positions.end());
     const auto hull = convex_hull(points);
     if (!hull) return hull.error();

@@ -7,6 +7,7 @@
 
 #include "assets/file.hpp"
 #include "assets/flat_scene.hpp"
+#include "assets/float_origin.hpp"
 #include "assets/obj_file.hpp"
 #include "assets/scene_source.hpp"
 
@@ -25,39 +26,49 @@ Result<void> for_each_instance(const std::string& path, const ReadOptions& optio
     return {};
 }
 
-Result<TriangleMesh> with_triangles(TriangleMesh mesh, const std::string& path, const std::string& why = {}) {
-    if (mesh.indices.empty()) return fail(ErrorCode::empty, kNoItem, path + ": no triangles" + why);
-    return mesh;
+// Moves the vertices to an origin near them.
+Result<PlacedMesh> placed(std::span<const glm::dvec3> positions, const glm::dvec3& origin,
+                          Vector<std::uint32_t> indices, const std::string& path, const std::string& why = {}) {
+    if (indices.empty()) return fail(ErrorCode::empty, kNoItem, path + ": no triangles" + why);
+    PlacedMesh result{{}, origin};
+    result.mesh.indices = std::move(indices);
+    for (const glm::dvec3& p : positions) result.mesh.positions.push_back(glm::vec3(p - origin));
+    return result;
 }
 
-Result<TriangleMesh> load_obj_mesh(const std::string& path, const ReadOptions& options) {
+Result<PlacedMesh> load_obj_mesh(const std::string& path, const ReadOptions& options) {
     const auto file = assets::read_obj(path, {.limits = options.limits});
     if (!file) return file.error();
-    if (auto whole = refuse_if_strict(path, file->odd_faces, options); !whole) return whole.error();
-    print_warnings(file->odd_faces);
-    TriangleMesh mesh;
-    mesh.positions.assign(file->positions.begin(), file->positions.end());
+    if (auto whole = refuse_if_strict(path, file->odd_lines, options); !whole) return whole.error();
+    print_warnings(file->odd_lines);
+    Vector<std::uint32_t> indices;
     for (const assets::ObjFile::Part& part : file->parts)
-        mesh.indices.insert(mesh.indices.end(), part.indices.begin(), part.indices.end());
-    return with_triangles(std::move(mesh), path, file->unknown_line);
+        indices.insert(indices.end(), part.indices.begin(), part.indices.end());
+    return placed(file->positions, file->origin, std::move(indices), path, file->unknown_line);
 }
 
 }  // namespace
 
-Result<TriangleMesh> load_mesh(const std::string& path, const ReadOptions& options) {
+Result<PlacedMesh> load_mesh(const std::string& path, const ReadOptions& options) {
     if (assets::extension(path) == "obj") return load_obj_mesh(path, options);
-    TriangleMesh all;
+    std::vector<glm::dvec3> positions;
+    Vector<std::uint32_t> indices;
+    glm::dvec3 low(std::numeric_limits<double>::max()), high = -low;
     const auto loaded = for_each_instance(path, options, [&](const TriangleMesh& mesh, const Transform& world) {
-        const auto base = static_cast<std::uint32_t>(all.positions.size());
-        for (const glm::vec3& p : mesh.positions) all.positions.push_back(glm::vec3(world * glm::dvec3(p)));
-        const std::size_t first = all.indices.size();
-        for (const std::uint32_t index : mesh.indices) all.indices.push_back(base + index);
+        const auto base = static_cast<std::uint32_t>(positions.size());
+        for (const glm::vec3& p : mesh.positions) {
+            positions.push_back(world * glm::dvec3(p));
+            low = glm::min(low, positions.back());
+            high = glm::max(high, positions.back());
+        }
+        const std::size_t first = indices.size();
+        for (const std::uint32_t index : mesh.indices) indices.push_back(base + index);
         // Mirrored, what was outside would be inside.
         if (glm::dot(world.linear[0], glm::cross(world.linear[1], world.linear[2])) >= 0.0) return;
-        for (std::size_t i = first; i < all.indices.size(); i += 3) std::swap(all.indices[i + 1], all.indices[i + 2]);
+        for (std::size_t i = first; i < indices.size(); i += 3) std::swap(indices[i + 1], indices[i + 2]);
     });
     if (!loaded) return loaded.error();
-    return with_triangles(std::move(all), path);
+    return placed(positions, assets::float_origin(low, high), std::move(indices), path);
 }
 
 Result<std::vector<glm::dvec3>> load_points(const std::string& path, const ReadOptions& options) {

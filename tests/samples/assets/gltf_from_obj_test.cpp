@@ -88,6 +88,32 @@ TEST_SUITE("assets/gltf_from_obj") {
         CHECK(root["extensionsUsed"] == Json{"KHR_materials_emissive_strength"});
     }
 
+    TEST_CASE("names may have blanks, and a number sign that is no comment") {
+        const TemporaryFile library(
+            "names.mtl",
+            "newmtl red paint # seen at once\nKd 1 0 0\nmap_Kd wet paint.png\nnewmtl red glass\n"
+            "Kd 0 1 0\nnewmtl wire #1\nKd 0 0 1\nnewmtl wire #2\t\nKd 0 0 0\nmap_Kd -s 1 1 1 a.png\n");
+        const auto document =
+            convert("mtllib " + std::filesystem::path(library.path()).filename().string() + "\n" + kSquare +
+                    "o a house # mine\nusemtl red paint\nf 1 2 3\nusemtl  red glass # clear\nf 1 2 3\nusemtl wire #2\n"
+                    "f 1 2 3\nusemtl wire #1 \nf 1 2 3\nusemtl red\nf 1 2 3\n");
+        const Json& root = document.root;
+        CHECK(root["meshes"][0]["name"] == "a house");
+        REQUIRE(root["materials"].size() == 5);
+        const auto color = [&](std::size_t i) {
+            return root["materials"][i]["pbrMetallicRoughness"]["baseColorFactor"].get<std::vector<float>>();
+        };
+        CHECK(color(0) == std::vector<float>{1, 0, 0, 1});
+        CHECK(color(1) == std::vector<float>{0, 1, 0, 1});
+        CHECK(color(2) == std::vector<float>{0, 0, 0, 1});
+        CHECK(color(3) == std::vector<float>{0, 0, 1, 1});
+        CHECK(color(4)[1] == doctest::Approx(0.6));  // not there
+        CHECK(root["materials"][1]["name"] == "red glass");
+        CHECK(root["materials"][2]["name"] == "wire #2");
+        CHECK(root["images"][0]["uri"] == "wet%20paint.png");
+        CHECK(root["images"][1]["uri"] == "a.png");
+    }
+
     TEST_CASE("vertex colours stand in the place of the material's") {
         const auto document =
             convert("usemtl red\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\nv 1 1 0\nf 1 2 3\nf 2 4 3\n");
@@ -122,5 +148,21 @@ TEST_SUITE("assets/gltf_from_obj") {
         CHECK(patches("f 1/1 2/2 5/5 6/6\nf 2/2 3/13 4/4 5/5\n") == std::pair<std::size_t, std::size_t>(1, 3));
         CHECK(patches("usemtl a\nf 1/1 2/2 5/5 6/6\nusemtl b\nf 2/2 3/3 4/4 5/5\n") ==
               std::pair<std::size_t, std::size_t>(2, 4));
+    }
+
+    TEST_CASE("vertices too far out for floats are relative to a node's translation") {
+        const auto document = convert(
+            "v 500000.25 5400000.125 7\nv 500001 5400000.125 7\nv 500001 5400001.5 7.5\no a\nf 1 2 3\no b\nf 3 2 1\n");
+        for (const Json& node : document.root["nodes"]) {
+            const auto at = node["translation"].get<std::vector<double>>();
+            const Json& position =
+                document.root["meshes"][node["mesh"].get<std::size_t>()]["primitives"][0]["attributes"]["POSITION"];
+            const std::vector<float> v = floats(document, position);
+            const std::size_t first = node["name"] == "a" ? 0 : 6;
+            CHECK(at[0] + static_cast<double>(v[first]) == 500000.25);
+            CHECK(at[1] + static_cast<double>(v[first + 1]) == 5400000.125);
+            CHECK(at[2] + static_cast<double>(v[first + 2]) == 7.0);
+        }
+        CHECK_FALSE(convert(std::string(kSquare) + "f 1 2 3\n").root["nodes"][0].contains("translation"));
     }
 }

@@ -187,7 +187,7 @@ void check_area(std::mt19937& random, Ring ring, double area, std::size_t most_t
         std::vector<glm::dvec3> corners;
         for (const glm::dvec2& p : ring) corners.push_back(plane.at(p));
         const auto obj = read_face(face_text(corners, random() % 2 == 0));
-        CHECK(obj.odd_faces.empty());
+        CHECK(obj.odd_lines.empty());
         CHECK(area_along(obj, backwards ? -normal : normal) ==
               doctest::Approx(area * plane.size * plane.size).epsilon(1e-9));
         CHECK(obj.parts[0].indices.size() <= 3 * most_triangles);
@@ -256,7 +256,7 @@ TEST_SUITE("assets/obj_faces") {
             std::vector<glm::dvec3> corners;
             for (const glm::dvec2& p : ring) corners.emplace_back(glm::vec3(plane.at(p)));
             const auto obj = read_face(face_text(corners));
-            CHECK(obj.odd_faces.empty());
+            CHECK(obj.odd_lines.empty());
             double area = 0.0;
             for (std::size_t i = 0; i < obj.parts[0].indices.size(); i += 3) {
                 const auto at = [&](std::size_t k) { return obj.positions[obj.parts[0].indices[i + k]]; };
@@ -280,7 +280,7 @@ TEST_SUITE("assets/obj_faces") {
             for (std::size_t i = 0; i < corners.size(); ++i)
                 newell += glm::cross(corners[i] - plane.origin, corners[(i + 1) % corners.size()] - plane.origin);
             const auto obj = read_face(face_text(corners));
-            if (!obj.odd_faces.empty()) continue;  // the warp made it cross itself
+            if (!obj.odd_lines.empty()) continue;  // the warp made it cross itself
             CHECK(area_along(obj, glm::normalize(newell)) == doctest::Approx(0.5 * glm::length(newell)).epsilon(1e-9));
             CHECK(obj.parts[0].indices.size() == 3 * (corners.size() - 2));
         }
@@ -338,18 +338,18 @@ TEST_SUITE("assets/obj_faces") {
         const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 3 0 0\n";
         const auto warning = [&](const std::string& face) {
             const auto obj = read_face(square + face);
-            REQUIRE(obj.odd_faces.size() == 1);
+            REQUIRE(obj.odd_lines.size() == 1);
             CHECK(obj.warnings.empty());
-            return obj.odd_faces[0];
+            return obj.odd_lines[0];
         };
         for (const char* face : {"f 1 3 2 4\n", "f 1 2 5 6\n", "f 1 1 1 1\n", "f 1 2 3 2\n"})
             CHECK(warning(face) == "line 7: face: crosses itself or has no area: cut as a fan from its first corner");
-        CHECK(read_face(square + "f 1 2 3 3 4 4\n").odd_faces.empty());  // corners named twice
+        CHECK(read_face(square + "f 1 2 3 3 4 4\n").odd_lines.empty());  // corners named twice
         std::string many = square;
         for (int i = 0; i < 100; ++i) many += "f 1 3 2 4\n";
         const auto obj = read_face(many);
-        REQUIRE(obj.odd_faces.size() == 21);
-        CHECK(obj.odd_faces[20] == "80 more faces cross themselves or have no area: cut as fans");
+        REQUIRE(obj.odd_lines.size() == 21);
+        CHECK(obj.odd_lines[20] == "80 more faces cross themselves or have no area: cut as fans");
         const TemporaryFile file("bow_tie.obj", square + "f 1 3 2 4\nf 1 2 3 4\n");
         const auto source = assets::load_scene(file.path());
         REQUIRE(source.has_value());

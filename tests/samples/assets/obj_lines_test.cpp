@@ -169,6 +169,15 @@ TEST_SUITE("assets/obj_lines") {
         CHECK(message("#v\n# c\n\nvp 0\ns off\nlod 1\nl 1 2\ncurv2 1\n") == "read");
     }
 
+    TEST_CASE("a line whose keyword is none is named, though there are faces") {
+        const std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+        CHECK(read_lines(text).odd_lines.empty());
+        CHECK(read_lines(text + "f\u00A03 2 1\n").odd_lines ==
+              std::vector<std::string>{"line 5 begins with 'f\u00A03', which is no keyword: left out"});
+        CHECK(read_lines("F 1 2 3\n" + text + "F 3 2 1\n").odd_lines ==
+              std::vector<std::string>{"line 1 begins with 'F', which is no keyword: left out, and 1 more"});
+    }
+
     TEST_CASE("lines: a text without an end, ends that meet, continuations at the end") {
         const auto lines_of = [](std::string_view text) {
             std::vector<std::string> result;

@@ -61,6 +61,18 @@ TEST_SUITE("assets/obj_loader") {
         CHECK(source->scene.mesh(1).colors[0] == glm::vec3(0.25f, 0.5f, 0.75f));
     }
 
+    TEST_CASE("what is too far out for floats keeps its shape and its place") {
+        auto source = load_obj("v 500000.25 5400000.125 7\nv 500001 5400000.125 7\nv 500001 5400001.5 7.5\nf 1 2 3\n");
+        REQUIRE_MESSAGE(source.has_value(), message(source));
+        source->scene.update();
+        const TriangleMesh& mesh = source->scene.mesh(0);
+        const Transform& world = source->scene.world(source->scene.node_of(0));
+        CHECK(world * glm::dvec3(mesh.positions[0]) == glm::dvec3(500000.25, 5400000.125, 7.0));
+        CHECK(world * glm::dvec3(mesh.positions[2]) == glm::dvec3(500001.0, 5400001.5, 7.5));
+        const auto near = load_obj("v 0 0 0\nv 9 0 0\nv 9 100 0\nf 1 2 3\n");
+        CHECK(near->scene.local(0).translation == glm::dvec3(0.0));
+    }
+
     TEST_CASE("large meshes are cut into pieces that together hold every triangle once") {
         std::string text;
         for (int i = 0; i <= 60; ++i)

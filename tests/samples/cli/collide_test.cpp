@@ -241,4 +241,46 @@ TEST_SUITE("cli/collide") {
         CHECK(run_cli("collide " + pair + " --mode cast --spin 0,1e9,0").status == 2);
         CHECK(run_cli("collide " + pair + " --mode cast --duration -1").status == 2);
     }
+
+    TEST_CASE("files of surveys, whose coordinates are too large for floats, are answered as files at the origin") {
+        // Steps of floats are half a unit there; the cubes are a tenth of that.
+        const auto far_cube = [](const std::string& name, double x) {
+            const std::string path = scratch().file(name);
+            std::string text;
+            for (int i = 0; i < 8; ++i)
+                text += "v " + std::to_string(500000.0 + x + 0.05 * (i & 1)) + " " +
+                        std::to_string(5400000.25 + 0.05 * (i >> 1 & 1)) + " " + std::to_string(0.05 * (i >> 2)) + "\n";
+            write_contents(path, text + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n");
+            return path;
+        };
+        const auto near = [](double value) { return doctest::Approx(value).epsilon(1e-6); };
+        const std::string a = far_cube("survey_a.obj", 0.0), b = far_cube("survey_b.obj", 0.08), pair = a + " " + b,
+                          there = " --pose -0.05,0,0,1,0,0,0";
+        for (const std::string& kind : {std::string(), std::string(" --hulls")}) {
+            CAPTURE(kind);
+            CHECK(answer(pair + kind)["hit"] == false);
+            const json apart = answer(pair + kind + " --mode distance");
+            CHECK(apart["distance"].get<double>() == near(0.03));
+            CHECK(apart["nearest"]["on_a"][0].get<double>() - 500000.0 == near(0.05));
+            CHECK(apart["nearest"]["on_b"][0].get<double>() - 500000.0 == near(0.08));
+            const json deep = answer(pair + kind + there + " --mode all");
+            CHECK(deep["hit"] == true);
+            CHECK(deep["depth"].get<double>() == doctest::Approx(0.02).epsilon(1e-4));
+            for (const json& contact : deep["contacts"]) {
+                CHECK(contact["position"][0].get<double>() - 500000.0 >= 0.0299);
+                CHECK(contact["position"][1].get<double>() - 5400000.25 <= 0.0501);
+            }
+            const json cast = answer(pair + kind + " --mode cast --velocity -0.06,0,0");
+            CHECK(cast["time"].get<double>() == doctest::Approx(0.5).epsilon(1e-3));
+            CHECK(cast["on_a"][0].get<double>() - 500000.0 == near(0.05));
+            // A turn about the origin of the files, which is far away: half of one takes the cube there and back.
+            CHECK(answer(a + " " + a + kind + " --pose 1000000.15,10800000.55,0,0,0,0,1 --mode distance")["distance"]
+                      .get<double>() == doctest::Approx(0.05).epsilon(1e-4));
+        }
+        CHECK(answer(a + " " + cube_file("near.obj", 1.0) + " --mode distance")["distance"].get<double>() ==
+              doctest::Approx(std::hypot(499999.0, 5399999.25)).epsilon(1e-12));
+        const CliRun fitted = run_cli("study measure " + a + " --lines 1000 --json -");
+        CHECK(fitted.status == 0);
+        CHECK(fitted.json()["rows"][0]["predicted"].get<double>() == doctest::Approx(6 * 0.05 * 0.05).epsilon(1e-5));
+    }
 }

@@ -173,6 +173,12 @@ TEST_SUITE("scene/edit") {
         scene.update();
         CHECK(list(scene.moved_instances()) == Ids{instance});
         CHECK(contains(scene.world_boxes()[instance], {19.0, 0.0, 0.0}));
+        // Its box has the same bits.
+        REQUIRE(scene.replace_mesh(mesh, triangle).has_value());
+        scene.update();
+        CHECK(list(scene.moved_instances()) == Ids{instance});
+        scene.update();
+        CHECK(scene.moved_instances().empty());
     }
 
     TEST_CASE("an instance's layers are its own and its node's") {

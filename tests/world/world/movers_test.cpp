@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Objects that move in every frame, and meshes that deform.
 #include <doctest/doctest.h>
+#include <algorithm>
 #include <array>
+#include <box_mesh.hpp>
 #include <cmath>
 #include <error_of.hpp>
 #include <limits>
@@ -275,6 +277,37 @@ TEST_SUITE("world/movers") {
         }
         CHECK(world.statistics().moving == 2);
         CHECK(world.statistics().resting == 8);
+    }
+
+    TEST_CASE("a mesh that deforms costs its own pairs, wherever it stays within its box") {
+        World world;
+        const TriangleMesh block = testing::cube_mesh(0.5f);
+        const auto still = world.add_mesh({.positions = block.positions, .indices = block.indices}).value(),
+                   soft = world.add_mesh({.positions = block.positions, .indices = block.indices}).value();
+        for (int i = 0; i < 40; ++i)
+            REQUIRE(
+                world.add({.mesh = still, .transform = Transform{glm::dmat3(1.0), {0.9 * i, 0.0, 0.0}}}).has_value());
+        const auto object = world.add({.mesh = soft, .transform = Transform{glm::dmat3(1.0), {0.0, 0.9, 0.0}}}).value();
+        REQUIRE(world.update().has_value());
+        const std::size_t all = world.contacts().size();
+        const auto touches = [&] {
+            return std::count_if(world.contacts().begin(), world.contacts().end(), [&](const Contact& contact) {
+                return contact.phase != ContactPhase::ended &&
+                       (contact.first.object == object || contact.second.object == object);
+            });
+        };
+        REQUIRE(touches() == 2);
+        for (int frame = 0; frame < 6; ++frame) {
+            // A tetrahedron in the upper half of the block's box, which one corner holds open, and the block again.
+            auto now = block.positions;
+            if (frame % 2 == 0)
+                for (glm::vec3& p : now) p.y = p.y < 0.0f && p.x > 0.0f ? 0.4f : p.y;
+            REQUIRE(world.set_vertices(soft, now).has_value());
+            REQUIRE(world.update().has_value());
+            CHECK(world.statistics().contact_pairs_tested <= 2);
+            CHECK(touches() == (frame % 2 == 0 ? 1 : 2));
+            CHECK(world.contacts().size() == all);  // one has ended, or began
+        }
     }
 
     TEST_CASE("a mesh that deforms answers like one that has just been loaded") {

@@ -36,7 +36,7 @@ Result<void> check(const HeightFieldDescription& d) {
     for (std::size_t i = 0; i < d.heights.size(); ++i) {
         if (!std::isfinite(d.heights[i]))
             return fail(ErrorCode::non_finite, i,
-                        {"height field: height ", i, " is NaN or infinite; use kHole for holes"});
+                        {"height field: height ", i, " is NaN or infinite; holes are a material of cells"});
         if (std::abs(d.heights[i]) > kMaxExtent)
             return fail(ErrorCode::out_of_range, i, {"height field: height ", i, " exceeds 1e15"});
     }

@@ -168,7 +168,7 @@ Result<void> ClusteredMesh::lend(std::span<const glm::vec3> positions, std::span
         return fail(ErrorCode::invalid_argument, kNoItem, "clusters: what is lent has another number of triangles");
     if (keeps_order && triangle_order().size() != triangle_count_)
         return fail(ErrorCode::invalid_argument, kNoItem,
-                    "clusters: the order of triangles was dropped; lend the indices that permute() wrote");
+                    "clusters: the order of triangles was dropped; lend the permuted indices");
     for (std::size_t i = 0; i < indices.size(); ++i)
         if (indices[i] >= positions.size())
             return fail(ErrorCode::out_of_range, i, "clusters: an index of what is lent is out of range");
@@ -180,9 +180,10 @@ Result<void> ClusteredMesh::lend(std::span<const glm::vec3> positions, std::span
             for (std::uint32_t k = 0; k < 3; ++k) {
                 const std::size_t i = std::size_t{3} * (keeps_order ? own_->order[triangle] : triangle) + k;
                 if (positions[indices[i]] != patch->vertex(patch->corner(t, k)))
-                    return fail(ErrorCode::invalid_argument, i,
-                                "clusters: what is lent has a corner elsewhere; lend the indices that permute() wrote, "
-                                "or the original ones as such");
+                    return fail(
+                        ErrorCode::invalid_argument, i,
+                        "clusters: what is lent has a corner elsewhere; lend the permuted indices, or the original "
+                        "ones as such");
             }
     }
     if (keeps_order)

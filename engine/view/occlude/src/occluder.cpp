@@ -14,7 +14,7 @@ Result<Occluder> occluder_of(const Obb& box, std::uint64_t item) {
     if (auto valid = validate(box, item); !valid) return valid.error();
     for (int k = 0; k < 3; ++k)
         if (box.half_extents[k] == 0.0f)
-            return fail(ErrorCode::degenerate, item, "occluder: the box is flat; give a polygon to add_surface");
+            return fail(ErrorCode::degenerate, item, "occluder: the box is flat; give a polygon as a surface");
     Occluder occluder;
     occluder.box = box;
     return occluder;

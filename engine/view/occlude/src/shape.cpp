@@ -273,7 +273,7 @@ Result<Shape> convex_shape(std::span<const glm::vec3> points) {
     const auto hull = convex_hull(points);
     if (!hull) return hull.error();
     if (hull->rank < 3)
-        return fail(ErrorCode::degenerate, kNoItem, "occluder: the points are flat; give a polygon to add_surface");
+        return fail(ErrorCode::degenerate, kNoItem, "occluder: the points are flat; give a polygon as a surface");
     Shape shape;
     shape.convex = true;
     Vector<std::uint32_t> source;
@@ -295,11 +295,11 @@ Result<Shape> closed_shape(const TriangleMesh& mesh) {
     });
     if (open != kNone)
         return fail(ErrorCode::invalid_argument, open,
-                    {"occluder: the mesh is open at triangle ", open, "; close it, or give it to add_surface"});
+                    {"occluder: the mesh is open at triangle ", open, "; close it, or give it as a surface"});
     const double extent = extent_of(*shape);
     const double volume = volume_of(*shape);
     if (std::fabs(volume) <= 1e-12 * extent * extent * extent)
-        return fail(ErrorCode::degenerate, kNoItem, "occluder: the mesh is flat; give it to add_surface");
+        return fail(ErrorCode::degenerate, kNoItem, "occluder: the mesh is flat; give it as a surface");
     if (volume < 0.0)
         return fail(ErrorCode::invalid_argument, kNoItem, "occluder: the mesh is inside out; turn its triangles round");
     connect(*shape);

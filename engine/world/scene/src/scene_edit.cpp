@@ -78,6 +78,7 @@ Result<void> Scene::set_instance_mesh(InstanceId instance, MeshId mesh) {
     s.unlink_from_mesh(instance);
     s.link_to_mesh(instance, mesh);
     s.touched.insert(instance);
+    s.instances[instance].is_moved = true;
     return {};
 }
 

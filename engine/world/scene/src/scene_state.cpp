@@ -109,7 +109,10 @@ void Scene::State::unlink_from_mesh(InstanceId instance) {
 }
 
 void Scene::State::touch_instances_of(MeshId mesh) {
-    for (InstanceId i = meshes[mesh].first_instance; i != kNone; i = instances[i].next_of_mesh) touched.insert(i);
+    for (InstanceId i = meshes[mesh].first_instance; i != kNone; i = instances[i].next_of_mesh) {
+        touched.insert(i);
+        instances[i].is_moved = true;
+    }
 }
 
 // The node's list of instances is the caller's to mend.

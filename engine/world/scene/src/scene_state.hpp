@@ -35,8 +35,8 @@ struct Instance {
     InstanceId next_on_node = kNone, previous_on_node = kNone;
     InstanceId next_of_mesh = kNone, previous_of_mesh = kNone;
     std::uint32_t own_mask = ~0u;
-    bool is_new = true;       // added since the last update
-    bool is_carried = false;  // its node has got another world transform in this update
+    bool is_new = true;     // added since the last update
+    bool is_moved = false;  // though its box may be the same: its node's transform or its mesh has changed
 };
 static_assert(sizeof(Instance) == 32);
 

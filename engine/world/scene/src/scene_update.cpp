@@ -184,7 +184,7 @@ void Scene::State::update_nodes(std::span<const NodeId> ids, UpdateWorker& worke
         const std::uint32_t mask = node.parent == kNone ? node.own_mask : nodes[node.parent].mask & node.own_mask;
         if (mask != node.mask) node.mask = mask;  // what is not written need not go back to memory; likewise below
         for (InstanceId i = node.first_instance; i != kNone; i = instances[i].next_on_node) {
-            if (carries) instances[i].is_carried = true;
+            if (carries) instances[i].is_moved = true;
             update_instance(i, worker);
         }
     }
@@ -246,8 +246,8 @@ void Scene::State::set_careful_box(InstanceId id, UpdateWorker& worker) {
 void Scene::State::set_box(InstanceId id, const Obb& box, bool shown, UpdateWorker& worker) {
     Instance& instance = instances[id];
     const std::uint32_t mask = shown ? nodes[instance.node].mask & instance.own_mask : 0;
-    if (instance.is_new || instance.is_carried || !have_same_bits(box, boxes[id])) worker.moved.push_back(id);
-    if (instance.is_carried) instance.is_carried = false;
+    if (instance.is_new || instance.is_moved || !have_same_bits(box, boxes[id])) worker.moved.push_back(id);
+    if (instance.is_moved) instance.is_moved = false;
     if (instance.is_new || mask != masks[id]) {
         worker.relayered.push_back(id);
         masks[id] = mask;

@@ -390,7 +390,7 @@ Result<void> ContactFinder::update(const ObjectTable& table, SpatialIndex& index
     filters_.settle();
     note_pairs(table, changes);
     if (!options_.contacts) return found;
-    const auto touched = changes.all_contacts ? broadphase_.pairs() : broadphase_.tested();
+    const auto touched = broadphase_.tested();
     touched_.assign(touched.begin(), touched.end());
     find_contacts(table, index, scene, shapes, shapes_of, touch_shape, executor);
     replace_contacts(table, broadphase_.ended());

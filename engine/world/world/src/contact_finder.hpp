@@ -70,13 +70,12 @@ struct BoundTouch {
 struct PairChanges {
     Vector<std::uint32_t> objects;  // whose kind, radius, mesh, shape, user data or layers to collide with have changed
     bool renamed = false;           // some have other user data
-    bool all_contacts = false;      // triangles of meshes have changed
     bool after_error = false;       // the update before found too many pairs
 
-    [[nodiscard]] bool any() const { return !objects.empty() || all_contacts || after_error; }
+    [[nodiscard]] bool any() const { return !objects.empty() || after_error; }
     void clear() {
         objects.clear();
-        renamed = all_contacts = after_error = false;
+        renamed = after_error = false;
     }
 };
 

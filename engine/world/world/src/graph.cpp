@@ -67,6 +67,7 @@ Result<MeshHandle> World::add_mesh(const MeshDescription& description) {
     }
     s.mesh_clusters.set(*mesh, std::move(*clusters), s.scene);
     s.shapes.set_mesh(*mesh, description.triangles);
+    s.shapes.note(*mesh);
     s.meshes.add(*mesh);
     return MeshHandle{*mesh, s.meshes.generations[*mesh]};
 }
@@ -84,6 +85,7 @@ Result<void> World::replace_mesh(MeshHandle mesh, const MeshDescription& descrip
     }
     auto clusters = world::MeshClusters::cut(replacement, description);
     if (!clusters) return clusters.error();
+    state_->shapes.note(mesh.index);
     auto replaced = state_->scene.replace_mesh(mesh.index, std::move(replacement), description.box);
     if (!replaced) return replaced;
     state_->note_removal();
@@ -103,6 +105,7 @@ Result<void> World::set_vertices(MeshHandle mesh, PointsView positions) {
     s.vertices.resize(positions.size());
     for (std::size_t i = 0; i < positions.size(); ++i) s.vertices[i] = positions[i];
     s.mesh_clusters.keep_copy(mesh.index);
+    s.shapes.note(mesh.index);
     auto set = s.scene.set_vertices(mesh.index, s.vertices);
     if (!set) return set;
     s.shapes.note_deformed(mesh.index);
@@ -112,6 +115,7 @@ Result<void> World::set_vertices(MeshHandle mesh, PointsView positions) {
 
 Result<void> World::remove(MeshHandle mesh) {
     if (auto known = state_->check(mesh, mesh.index); !known) return known;
+    state_->shapes.note(mesh.index);
     auto removed = state_->scene.remove_mesh(mesh.index);
     if (!removed) return removed;
     state_->note_removal();

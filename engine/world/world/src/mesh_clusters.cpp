@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "mesh_clusters.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "require_ok.hpp"
@@ -36,7 +37,9 @@ void MeshClusters::set(scene::MeshId mesh, Mesh cut, const scene::Scene& scene) 
 }
 
 void MeshClusters::keep_copy(scene::MeshId mesh) {
-    if (mesh < meshes_.size()) meshes_[mesh].cut.keep_copy();
+    if (mesh >= meshes_.size() || !meshes_[mesh].wanted) return;
+    noted_.push_back(mesh);
+    meshes_[mesh].cut.keep_copy();
 }
 
 void MeshClusters::clear(scene::MeshId mesh) {
@@ -49,12 +52,14 @@ MeshClusters::Mesh MeshClusters::take(scene::MeshId mesh) {
 
 bool MeshClusters::update(const scene::Scene& scene, Executor& executor) {
     deformed_.clear();
-    for (scene::MeshId id = 0; id < meshes_.size(); ++id) {
+    std::sort(noted_.begin(), noted_.end());
+    for (const scene::MeshId id : noted_) {
         Mesh& mesh = meshes_[id];
         if (!mesh.wanted || scene.is_mesh_removed(id) || mesh.revision == scene.mesh_revision(id)) continue;
         mesh.revision = scene.mesh_revision(id);
         deformed_.push_back(id);
     }
+    noted_.clear();
     executor.parallel_for(deformed_.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
         for (std::size_t i = begin; i < end; ++i) {
             Mesh& mesh = meshes_[deformed_[i]];

@@ -38,6 +38,7 @@ class MeshClusters {
 
   private:
     Vector<Mesh> meshes_;
+    Vector<scene::MeshId> noted_;     // whose copies were kept since the last update
     Vector<scene::MeshId> deformed_;  // scratch
 };
 

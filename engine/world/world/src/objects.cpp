@@ -58,6 +58,7 @@ Result<scene::MeshId> World::State::mesh_of(const ObjectDescription& description
     const auto added = scene.add_mesh(std::move(mesh));
     if (!added) return added;
     shapes.set_mesh(*added, false);
+    shapes.note(*added);
     return point = *added;
 }
 

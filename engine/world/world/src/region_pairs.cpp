@@ -148,7 +148,7 @@ void RegionPairs::merge(std::span<const ObjectPair> pairs, std::span<const Conta
 void World::State::list_changed_near_regions() {
     Vector<std::uint32_t>& changed = region_pairs.changed;
     changed.assign(finder.moved().begin(), finder.moved().end());
-    if (pair_changes.all_contacts || region_pairs.lost)
+    if (region_pairs.lost)
         for (std::uint32_t id = 0; id < table.objects.size(); ++id) changed.push_back(id);
     for (const std::uint32_t slot : regions.changed())
         visit_bounded_near(aabb_of(regions.at_slot(slot).bounds), 2.0 * options.contact_margin, ~0u,

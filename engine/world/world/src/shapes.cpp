@@ -127,19 +127,19 @@ void Shapes::update_tree(const TriangleMesh& triangles, Mesh& mesh, Executor& ex
     if (mesh.can_refit) mesh.spread = spread_of(tree);
 }
 
-bool Shapes::update(const scene::Scene& scene, Executor& executor) {
+void Shapes::update(const scene::Scene& scene, Executor& executor) {
     to_build_.clear();
-    bool changed = false;
-    for (scene::MeshId mesh = 0; mesh < meshes_.size(); ++mesh) {
+    std::sort(noted_.begin(), noted_.end());
+    for (const scene::MeshId mesh : noted_) {
         const std::uint64_t revision = scene.is_mesh_removed(mesh) ? 0 : scene.mesh_revision(mesh);
         if (meshes_[mesh].revision == revision) continue;
-        changed = true;
         meshes_[mesh].revision = revision;
         if (revision != 0 && meshes_[mesh].wants_triangles)
             to_build_.push_back(mesh);
         else
             meshes_[mesh].shape = {}, meshes_[mesh].can_refit = false;
     }
+    noted_.clear();
     // A mesh that would keep one thread longer than the others is built by all.
     std::size_t all = 0;
     for (const std::uint32_t mesh : to_build_) all += scene.mesh(mesh).indices.size();
@@ -153,7 +153,6 @@ bool Shapes::update(const scene::Scene& scene, Executor& executor) {
         for (std::size_t i = large_count + begin; i < large_count + end; ++i)
             update_tree(scene.mesh(to_build_[i]), meshes_[to_build_[i]], serial_executor());
     });
-    return changed;
 }
 
 void Shapes::begin() {

@@ -57,8 +57,10 @@ class Shapes {
     void set_mesh(scene::MeshId mesh, bool wants_triangles);
     // Its vertices have moved: its tree is refitted from the second time on, and built anew where it has worn out.
     void note_deformed(scene::MeshId mesh) { meshes_[mesh].deforms = true; }
-    // Builds the trees of meshes that are new or changed; true if there were any.
-    bool update(const scene::Scene& scene, Executor& executor);
+    // Meshes that are new, change or go; before they change or go.
+    void note(scene::MeshId mesh) { noted_.push_back(mesh); }
+    // Builds the trees of meshes that are new or changed. Looks at those that were noted alone.
+    void update(const scene::Scene& scene, Executor& executor);
 
     // Its mesh, and the mesh's tree; none for a bound, and where triangles are not wanted or none is valid: then its
     // box stands for it.
@@ -104,7 +106,7 @@ class Shapes {
     Vector<Mesh> meshes_;
     Vector<std::uint32_t> own_of_object_;  // kNoIndex: none
     Vector<Own> own_;
-    Vector<std::uint32_t> free_, to_build_;
+    Vector<std::uint32_t> free_, to_build_, noted_;
     mesh::MeshTree point_;
 };
 

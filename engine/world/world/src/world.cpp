@@ -215,7 +215,7 @@ Result<void> World::State::apply_scene(Executor& executor) {
         if (layers != 0) index.set_layers(object, layers);
     }
     auto scaled = update_shapes();
-    pair_changes.all_contacts |= shapes.update(scene, executor);
+    shapes.update(scene, executor);
     scene_changed |= mesh_clusters.update(scene, executor);
     return scaled;
 }

@@ -143,7 +143,7 @@ class Scene {
 
     // The changes of the last update(), each list ascending and without repetition. An id that was removed and reused
     // since the update before is in removed_instances() for its old instance and in the other lists for its new one.
-    [[nodiscard]] std::span<const InstanceId> moved_instances() const;      // new, or with another box or transform
+    [[nodiscard]] std::span<const InstanceId> moved_instances() const;  // new, or with another box, transform or mesh
     [[nodiscard]] std::span<const InstanceId> relayered_instances() const;  // new, or with another layer mask
     [[nodiscard]] std::span<const InstanceId> removed_instances() const;    // existed before, now removed
 
