@@ -56,6 +56,18 @@ double distance_to_feature(const ShapeAtPose& b, const Feature& feature, const g
     return distance_to_plane(p, placed(b, 0), placed(b, 1), placed(b, 2));
 }
 
+// The least of points below a surface, by its rounding or more, more where it is tilted. It is convex along the line.
+double distance_below(const ShapeAtPose& b, const Feature& feature, const glm::dvec3& on_surface,
+                      const glm::dvec3& out) {
+    double low = 0.99 * b.shape.radius(), high = 50.0 * b.shape.radius();
+    const auto at_depth = [&](double t) { return distance_to_feature(b, feature, on_surface - t * out); };
+    for (int i = 0; i < 100; ++i) {
+        const double left = (2.0 * low + high) / 3.0, right = (low + 2.0 * high) / 3.0;
+        (at_depth(left) <= at_depth(right) ? high : low) = at_depth(left) <= at_depth(right) ? right : left;
+    }
+    return at_depth(low);
+}
+
 }  // namespace
 
 TEST_SUITE("convex/features") {
@@ -84,8 +96,8 @@ TEST_SUITE("convex/features") {
                 if (at_ends && a.radius() > 0.0 && b.radius() > 0.0)
                     tolerance += 0.036 * std::min(a.core_radius(), b.core_radius());
                 CAPTURE(i);
-                CHECK(distance_to_feature(pa, point.on_a, point.position + half - a.radius() * m.normal) <= tolerance);
-                CHECK(distance_to_feature(pb, point.on_b, point.position - half + b.radius() * m.normal) <= tolerance);
+                CHECK(distance_below(pa, point.on_a, point.position + half, m.normal) <= tolerance);
+                CHECK(distance_below(pb, point.on_b, point.position - half, -m.normal) <= tolerance);
                 ++named[static_cast<int>(point.on_a.kind)][static_cast<int>(point.on_b.kind)];
             }
         }

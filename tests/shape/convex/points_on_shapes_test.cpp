@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <crofton/convex/query.hpp>
+#include <crofton/mesh/mesh_tree.hpp>
+#include <map>
 #include <optional>
 
 #include "contact_ids.hpp"
@@ -16,11 +18,18 @@ using namespace crofton::testing;
 
 namespace {
 
-// How far the ends of a contact point are from their shapes.
+// How far a point is from the surface, outside or inside.
+double off_surface(const ShapeAtPose& shape, const glm::dvec3& point) {
+    static const Shape kPoint = Shape::sphere(0.0f).value();
+    const double outside = closest_point(shape, point).distance;
+    return outside > 0.0 ? outside : penetration(shape, {kPoint, at(point)}).depth;
+}
+
+// How far the ends of a contact point are from the surfaces.
 double off_shapes(const ShapeAtPose& a, const ShapeAtPose& b, const Manifold& m, int i) {
     const ContactPoint& p = m.points[i];
     const glm::dvec3 half = 0.5 * p.depth * m.normal;
-    return std::max(closest_point(a, p.position + half).distance, closest_point(b, p.position - half).distance);
+    return std::max(off_surface(a, p.position + half), off_surface(b, p.position - half));
 }
 
 // A vertex of a box or triangle is where its contact is; an edge or face of a box has the point on it.
@@ -174,6 +183,63 @@ TEST_SUITE("convex/points_on_shapes") {
         CHECK(manifolds > 15000);
     }
 
+    TEST_CASE("the points of rounded shapes that are tilted are on the surfaces, not inside") {
+        RandomShapes random(44);
+        std::map<std::pair<Kind, Kind>, int> tilted;
+        for (int i = 0; i < 30000; ++i) {
+            CAPTURE(i);
+            const auto rounded = [&](const Shape& core) {
+                return Shape::rounded(core, static_cast<float>(random.number(0.05, 0.5))).value();
+            };
+            const Shape round[] = {rounded(random.box()), rounded(random.hull(10)), rounded(random.polytope(4)),
+                                   Shape::capsule(0.8f, 0.3f).value(), rounded(Shape::cylinder(0.4f, 0.3f).value())};
+            const Shape a = round[i % 5], b = i % 3 == 0   ? round[random.index(5)]
+                                              : i % 3 == 1 ? random.polytope(12)
+                                                           : Shape::half_space({{0, 1, 0}, -0.3}).value();
+            const RigidTransform pose_a{random.rotation(), {}},
+                pose_b{random.rotation(), random.number(0.3, 2.0) * random.direction()};
+            const ShapeAtPose pa{a, pose_a}, pb{b, pose_b};
+            const bool back = i % 2 == 0;
+            const Manifold m =
+                contact_manifold(back ? pb : pa, back ? pa : pb, {.margin = i % 4 < 2 ? 0.0 : 0.1, .max_points = 8});
+            for (int k = 0; k < m.count; ++k) {
+                CHECK(m.points[k].depth <= m.depth);
+                // Round sides within 2 degrees have points midway between them; a hull's faces are flat to 1e-5.
+                const bool sides = !a.is_polytope() && !b.is_polytope() && b.is_bounded();
+                CHECK(off_shapes(back ? pb : pa, back ? pa : pb, m, k) <= (sides ? 1e-3 : 4e-5));
+                tilted[{a.kind(), b.kind()}] += m.points[k].depth < m.depth - 1e-3;
+            }
+        }
+        for (const Kind kind : {Kind::box, Kind::hull, Kind::capsule, Kind::cylinder})
+            for (const Kind other : {Kind::box, Kind::hull, Kind::half_space}) CHECK(tilted[{kind, other}] > 100);
+    }
+
+    TEST_CASE("the points of tilted round shapes on a triangle of a mesh are on its surface and theirs") {
+        RandomShapes random(45);
+        int points = 0;
+        Manifolds found;
+        for (int i = 0; i < 6000; ++i) {
+            CAPTURE(i);
+            const TriangleMesh mesh{
+                .positions = {{-2, 0, -2}, {-2, 0, 2}, {2, 0, 0}}, .indices = {0, 1, 2}, .colors = {}};
+            const mesh::MeshTree tree = mesh::MeshTree::build(mesh).value();
+            const Shape floor = Shape::mesh(tree).value();
+            const Shape a =
+                i % 2 == 0 ? Shape::capsule(0.8f, 0.3f).value() : Shape::rounded(random.box(), 0.2f).value();
+            const RigidTransform pose{random.rotation(),
+                                      {random.number(-1, 1), random.number(0, 1), random.number(-1, 1)}};
+            const ShapeAtPose pa{a, pose}, pb{floor, at({})};
+            contact_manifolds(pa, pb, {.margin = i % 4 < 2 ? 0.0 : 0.1}, found);
+            if (found.all().size() != 1) continue;
+            const Manifold& m = found.all()[0];
+            for (int k = 0; k < m.count; ++k) {
+                CHECK(off_shapes(pa, pb, m, k) <= 1e-6);
+                points += m.points[k].depth < m.depth - 1e-3;
+            }
+        }
+        CHECK(points > 500);
+    }
+
     TEST_CASE("a bar without width that lies on a shape has a point at either end of their common stretch") {
         const Shape needle = Shape::box({1, 0, 0}).value(), slab = Shape::box({0.5f, 0.25f, 2}).value(),
                     capsule = Shape::capsule(0.5f, 0.25f).value();
@@ -212,8 +278,8 @@ TEST_SUITE("convex/points_on_shapes") {
                 if (!p.overlapping) continue;
                 const double size = a.shape.core_radius() + b.shape.core_radius() +
                                     glm::distance(a.pose.translation, b.pose.translation) + 0.1;
-                CHECK(closest_point(a, p.on_a).distance <= 1e-9 * size);
-                CHECK(closest_point(b, p.on_b).distance <= 1e-9 * size);
+                CHECK(off_surface(a, p.on_a) <= 1e-9 * size);
+                CHECK(off_surface(b, p.on_b) <= 1e-9 * size);
                 CHECK(glm::distance(p.on_a - p.on_b, p.depth * p.normal) <= 1e-12 * size);
                 ++overlapping;
             }

@@ -45,7 +45,31 @@ void keep_ids_apart(GatheredPoints& points, int before) {
         }
 }
 
+// How far a point is below the surface of a rounded shape, along a direction out of it; 0 of one that is not inside.
+double below_surface(const ShapeAtPose& placed, const glm::dvec3& point, const glm::dvec3& out) {
+    const double reach = placed.shape.core_radius() + placed.shape.radius(),
+                 way = 2.0 * reach + glm::distance(point, placed.pose.translation);
+    const auto hit = raycast(placed, {point + way * out, -out, way});
+    return hit && !hit->started_inside ? way - hit->t : 0.0;
+}
+
 }  // namespace
+
+void move_to_surface(const ShapeAtPose& a, const ShapeAtPose& b, const glm::dvec3& normal, double deepest,
+                     std::span<ContactPoint> points) {
+    if (a.shape.radius() == 0.0 && b.shape.radius() == 0.0) return;
+    for (ContactPoint& p : points) {
+        if (!(p.depth < deepest - 1e-9 * (a.shape.radius() + b.shape.radius()))) continue;
+        const glm::dvec3 half = 0.5 * p.depth * normal;
+        double up = a.shape.radius() > 0.0 ? below_surface(a, p.position + half, normal) : 0.0,
+               down = b.shape.radius() > 0.0 ? below_surface(b, p.position - half, -normal) : 0.0;
+        const double share = std::min(1.0, (deepest - p.depth) / std::max(up + down, 0x1p-1000));
+        up *= share;
+        down *= share;
+        p.depth += up + down;
+        p.position += 0.5 * (up - down) * normal;
+    }
+}
 
 void Gatherer::add(const glm::dvec3& core_a, const glm::dvec3& core_b, const Feature& on_a, const Feature& on_b) {
     const glm::dvec3 p = core_a + of_.radius_a * touch_.normal, q = core_b - of_.radius_b * touch_.normal;

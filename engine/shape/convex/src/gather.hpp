@@ -50,4 +50,10 @@ void add_support(const Patch& face, const glm::dvec3& out, const glm::dvec3& dee
 // Sets the features of a touch that are not known: what the vertices of its simplex span, else the patches.
 void name_features(const Shape& a, const Shape& b, const Patch& patch_a, const Patch& patch_b, Touch& touch);
 
+// Moves the ends of points, which are above the core of a rounded shape by its radius along `normal`, out to the
+// shape's surface: under a face that is tilted against the normal they lie inside. No point becomes deeper than
+// `deepest`, and what is as deep stays.
+void move_to_surface(const ShapeAtPose& a, const ShapeAtPose& b, const glm::dvec3& normal, double deepest,
+                     std::span<ContactPoint> points);
+
 }  // namespace crofton::convex

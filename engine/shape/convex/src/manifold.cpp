@@ -62,11 +62,12 @@ void keep_choice(Manifold& manifold, const GatheredPoints& points, double kept, 
     std::copy_n(numbers, 4, cache.chosen);
 }
 
-Manifold finish(const GatheredPoints& points, const Touch& touch, const ManifoldOptions& options, double size,
-                PairCache* cache) {
+Manifold finish(const ShapeAtPose& a, const ShapeAtPose& b, GatheredPoints& points, const Touch& touch,
+                const ManifoldOptions& options, double size, PairCache* cache) {
     Manifold manifold;
     manifold.normal = touch.normal;
     if (points.count == 0) return manifold;
+    move_to_surface(a, b, touch.normal, touch.depth, {points.point, static_cast<std::size_t>(points.count)});
     const int most = std::clamp(options.max_points, 1, 8);
     thin_out(manifold, points.point, points.count, most);
     if (cache != nullptr && points.count > most && most <= 4) keep_choice(manifold, points, kKeptDepth * size, *cache);
@@ -103,7 +104,7 @@ Manifold gather_clipped(const ShapeAtPose& a, const ShapeAtPose& b, const Pair& 
     Gatherer gatherer(gathering_of(a, b, pair.size, options.margin), touch, points);
     gatherer.add(clipped, cache.reference == 1);
     if (gatherer.lacks_deepest(1e-9 * pair.size)) gatherer.add_deepest();
-    return finish(points, touch, options, pair.size, &cache);
+    return finish(a, b, points, touch, options, pair.size, &cache);
 }
 
 // a is the half-space.
@@ -134,7 +135,7 @@ Manifold on_half_space(const ShapeAtPose& a, const ShapeAtPose& b, const Manifol
         touch.feature_b = patch.self;
         gatherer.add_deepest();
     }
-    return finish(points, touch, options, b.shape.core_radius(), cache);
+    return finish(a, b, points, touch, options, b.shape.core_radius(), cache);
 }
 
 }  // namespace
@@ -159,7 +160,7 @@ Manifold contact_manifold(const ShapeAtPose& a, const ShapeAtPose& b, const Mani
         GatheredPoints points;
         const Warm answer = touch_of_boxes(a, b, pair, options.margin, cache, touch, points);
         if (answer == Warm::apart) return nothing();
-        if (answer == Warm::touching) return finish(points, touch, options, pair.size, cache);
+        if (answer == Warm::touching) return finish(a, b, points, touch, options, pair.size, cache);
     }
     Touch touch;
     Clipped clipped;
@@ -193,7 +194,7 @@ Manifold contact_manifold(const ShapeAtPose& a, const ShapeAtPose& b, const Mani
         name_features(a.shape, b.shape, patch_a, patch_b, touch);
         gatherer.add_deepest();
     }
-    return finish(points, touch, options, pair.size, cache);
+    return finish(a, b, points, touch, options, pair.size, cache);
 }
 
 }  // namespace crofton::convex

@@ -49,6 +49,13 @@ SurfaceContacts::SurfaceContacts(const NearSurface& surface, const ShapeAtPose& 
 
 void SurfaceContacts::ask(const NearTriangle& near, std::uint32_t index, EdgeRule& rule, Push push,
                           Contact& contact) const {
+    find_points(near, index, rule, push, contact);
+    move_to_surface({*surface_.shape, surface_.pose}, shape_, contact.normal, contact.depth,
+                    {contact.points.point, static_cast<std::size_t>(contact.points.count)});
+}
+
+void SurfaceContacts::find_points(const NearTriangle& near, std::uint32_t index, EdgeRule& rule, Push push,
+                                  Contact& contact) const {
     contact.points.count = 0;
     contact.left_out = false;
     PlacedTriangle t = placed_corners(near.corners, surface_.pose, surface_.pose.translation);
@@ -116,6 +123,7 @@ SurfaceContacts::Found SurfaceContacts::find(const PlacedTriangle& t, const Shap
     gatherer.add(clipped, true);
     if (gatherer.lacks_deepest(1e-9 * size_)) gatherer.add_deepest();
     contact.normal = touch.normal;
+    contact.depth = touch.depth;
     return glm::dot(touch.normal, t.normal) > 0.0 ? Found::points : Found::touch;
 }
 
@@ -123,6 +131,7 @@ SurfaceContacts::Found SurfaceContacts::find_on_half_space(const Shape& triangle
     const ManifoldOptions options{.margin = gathering_.margin, .max_points = 8};
     const Manifold m = contact_manifold({triangle, surface_.pose}, shape_, options, nullptr);
     contact.normal = m.normal;
+    contact.depth = -HUGE_VAL;  // the points are on the surfaces
     contact.points.count = m.count;
     for (int i = 0; i < m.count; ++i) {
         const ContactPoint& p = m.points[i];
@@ -158,6 +167,7 @@ void SurfaceContacts::gather_patches_along(const PlacedTriangle& t, Gatherer& ga
 
 void SurfaceContacts::gather(const PlacedTriangle& t, const Shape* triangle, Touch& touch, Contact& contact) const {
     contact.normal = touch.normal;
+    contact.depth = touch.depth;
     Gatherer gatherer(gathering_, touch, contact.points);
     Patch on_triangle, on_shape;
     gather_patches_along(t, gatherer, touch.normal, on_triangle, on_shape);
@@ -172,6 +182,7 @@ void SurfaceContacts::gather_along_face(const PlacedTriangle& t, bool front, Con
     touch.normal = front ? t.normal : -t.normal;
     touch.depth = HUGE_VAL;
     contact.normal = touch.normal;
+    contact.depth = touch.depth;
     Gatherer gatherer(gathering_, touch, contact.points);
     Patch on_triangle, on_shape;
     gather_patches_along(t, gatherer, touch.normal, on_triangle, on_shape);
@@ -196,6 +207,7 @@ void SurfaceContacts::add_deepest_above(const NearTriangle& near, const PlacedTr
     Patch on_shape;
     patch_along(shape_, -normal, gathering_.origin, on_shape);
     contact.normal = normal;
+    contact.depth = depth;
     contact.points.count = 1;
     contact.points.point[0] = {back.on_a - 0.5 * depth * normal, depth, {FeatureKind::face, 0}, on_shape.self, {}, {}};
 }

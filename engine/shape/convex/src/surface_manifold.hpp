@@ -26,6 +26,7 @@ class SurfaceContacts {
         glm::dvec3 normal;
         GatheredPoints points;
         bool left_out;
+        double depth;  // how deep the two are along the normal, which no point exceeds; infinite where that is unknown
     };
     // Push::to_one_side: where the rule has found the sides of the shape's middle.
     void ask(const NearTriangle& triangle, std::uint32_t index, EdgeRule& rule, Push push, Contact& contact) const;
@@ -38,6 +39,8 @@ class SurfaceContacts {
   private:
     // How the two touch along the least deep direction; false: they do not. Points that come with it go to `contact`.
     enum class Found : std::uint8_t { nothing, touch, points };
+    void find_points(const NearTriangle& triangle, std::uint32_t index, EdgeRule& rule, Push push,
+                     Contact& contact) const;
     [[nodiscard]] Found find(const PlacedTriangle& t, const Shape& triangle, Touch& touch, Contact& contact) const;
     [[nodiscard]] Found find_on_half_space(const Shape& triangle, Contact& contact) const;
     void gather_patches_along(const PlacedTriangle& t, Gatherer& gatherer, const glm::dvec3& normal, Patch& on_triangle,

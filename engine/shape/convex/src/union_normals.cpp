@@ -354,6 +354,7 @@ double UnionNormals::gather_along(const glm::dvec3& normal, Contact& contact) co
         add_support(on_a, normal, deepest.on_b, deepest.b, true, gatherer);
         add_support(on_b, -normal, deepest.on_a, deepest.a, false, gatherer);
     }
+    move_to_surface(a, b, normal, touch.depth, {points.point, static_cast<std::size_t>(points.count)});
     double most = -HUGE_VAL;
     for (int i = 0; i < points.count; ++i) most = std::max(most, points.point[i].depth);
     int kept = points.count;
