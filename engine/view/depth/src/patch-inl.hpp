@@ -260,7 +260,14 @@ class PatchDrawer {
             hn::Store(hn::IfThenElse(hn::AndNot(right, here), x, high), d, f.high[k] + i);
         }
         hn::Store(hn::Add(hn::Load(d, f.below + i), widest), d, f.below + i);
-        hn::Store(closed, integers, closed_ + block * Faces::kCount + i);
+        // Corner k lies between the edges k and k − 1. If neither is closed, both keep the distance.
+        const auto before = hn::Or(hn::ShiftLeft<1>(closed), hn::ShiftRight<2>(closed));
+        const auto rounded = hn::Or(closed, before), ends = hn::AndNot(hn::And(closed, before), all(7));
+        for (int k = 0; k < 3; ++k) {
+            const auto keeps = hn::RebindMask(d, hn::Ne(hn::And(rounded, all(1 << k)), all(0)));
+            hn::Store(hn::IfThenElseZero(keeps, hn::Load(d, f.corner[k] + i)), d, f.corner[k] + i);
+        }
+        hn::Store(hn::Or(closed, hn::ShiftLeft<kEnds>(ends)), integers, closed_ + block * Faces::kCount + i);
     }
 
     // The triangle with which `t` is drawn as one, or `t`: tiles along their common edge are then written once. The
@@ -330,14 +337,11 @@ class PatchDrawer {
             const auto t = static_cast<std::uint32_t>(std::countr_zero(left));
             const PatchBlock& block = patch_.blocks[t / Faces::kCount];
             const Faces& f = faces(t);
+            const auto ends = static_cast<std::uint32_t>(closed_[t]) >> kEnds;
             for (std::uint32_t k = 0; k < 3; ++k) {
                 const std::uint8_t corner = block.corners[k][lane(t)];
-                const std::uint32_t closed =
-                    static_cast<std::uint32_t>(closed_[t]) & (1u << k | 1u << (k == 0 ? 2 : k - 1));
-                // If none is closed, both keep the distance.
-                if (closed != 0) radius_[corner] = std::max(radius_[corner], f.corner[k][lane(t)]);
-                if (!std::has_single_bit(closed) && closed != 0) continue;
-                ends_[corner] = 1;
+                radius_[corner] = std::max(radius_[corner], f.corner[k][lane(t)]);
+                ends_[corner] |= static_cast<std::uint8_t>(ends >> k & 1);
             }
         }
         const DF d;
@@ -407,7 +411,9 @@ class PatchDrawer {
     const bool unclear_;  // in clip coordinates
     const ClipErrors errors_;
     std::uint64_t drawn_ = 0, solid_ = 0, visible_ = 0;        // triangles
-    alignas(64) std::int32_t closed_[Cluster::kMaxTriangles];  // edges, one bit each
+    static constexpr int kEnds = 3;
+    alignas(
+        64) std::int32_t closed_[Cluster::kMaxTriangles];  // edges, one bit each; from kEnds, corners at other edges
     std::uint8_t partners_[Cluster::kMaxTriangles];
     bool surface_is_closed_ = false;
     ExcludedSamples excluded_;

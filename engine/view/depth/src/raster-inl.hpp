@@ -332,8 +332,8 @@ class Rasterizer {
                 const VF before = kFirst ? hn::Set(d, kNothing) : hn::Load(d, pixel);
                 const auto within =
                     hn::And(hn::Ge(x, hn::Set(d, band_.low[row])), hn::Le(x, hn::Set(d, band_.high[row])));
-                const VF outside = hn::IfThenZeroElse(within, hn::Set(d, kNothing));
-                const VF after = hn::Max(hn::Add(hn::Add(depth, hn::Set(d, band_.ups[row])), outside), before);
+                const VF here = hn::Add(depth, hn::Set(d, band_.ups[row]));
+                const VF after = hn::IfThenElse(within, kFirst ? here : hn::Max(here, before), before);
                 hn::Store(after, d, pixel);
                 least = hn::Min(least, after);
             }

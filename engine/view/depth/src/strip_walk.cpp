@@ -4,6 +4,7 @@
 #include <hwy/cache_control.h>
 #include <algorithm>
 #include <cstddef>
+#include <utility>
 
 namespace crofton::depth {
 
@@ -39,6 +40,7 @@ void StripWalk::begin(std::uint32_t first_column, std::uint32_t end_column) {
     tiles.written = written_.data();
     if (!patch_) patch_ = Owner<Patch>::make();
     first_.fill(kEnd);
+    drawn_ = kEnd;
     items_.clear();
     clusters_.clear();
     unclear_.clear();
@@ -121,7 +123,8 @@ void StripWalk::draw(std::uint32_t object, std::uint32_t cluster, const ClusterB
     count(patch_->triangle_count, projection);
     const PatchData data{*patch_, bound, projection};
     if (projection.is_unclear()) unclear_.push_back({clusters_.size(), projection});
-    clusters_.push_back({object, cluster, draw_patch(picture_, frame_->data_of(object), data)});
+    if (std::exchange(drawn_, object) != object) drawn_data_ = frame_->data_of(object);
+    clusters_.push_back({object, cluster, draw_patch(picture_, drawn_data_, data)});
 }
 
 // Clusters that reach the near plane come first, with all triangles that may be in the picture: nothing is known then

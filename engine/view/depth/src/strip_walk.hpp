@@ -94,6 +94,8 @@ class StripWalk {
     Vector<Item> items_;
     Vector<Projection> projections_;  // of the clusters of one object
     Owner<Patch> patch_;              // the cluster that is drawn
+    std::uint32_t drawn_ = kEnd;      // its object, or that of the one before
+    ObjectData drawn_data_{};
     struct Unclear {
         std::size_t place;  // in clusters_
         Projection projection;
