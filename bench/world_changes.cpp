@@ -3,6 +3,7 @@
 // while objects move.
 #include <algorithm>
 #include <cmath>
+#include <crofton/convex/query.hpp>
 #include <crofton/crofton.hpp>
 #include <random>
 #include <vector>
@@ -148,42 +149,55 @@ void print_cell(std::vector<double> times, Change change) {
     std::fflush(stdout);
 }
 
-// Of `count` boxes the first so many move in each update.
-void queries(std::size_t count, std::size_t moving, bool pairs) {
+// Of `count` spheres the first so many move in each update, and some of these are replaced.
+void queries(std::size_t count, std::size_t moving, std::size_t replaced) {
     std::mt19937_64 random(1);
     std::uniform_real_distribution<double> number(-200.0, 200.0);
     const auto place = [&] { return glm::dvec3(number(random), number(random), number(random)); };
-    World world({.pairs = pairs, .contacts = false});
+    World world({.pairs = false, .contacts = false});
     std::vector<ObjectHandle> objects;
     std::vector<glm::dvec3> places;
     for (std::size_t i = 0; i < count; ++i) {
         places.push_back(place());
         objects.push_back(world.add({.bound = Sphere{places[i], 1.0}}).value());
     }
-    const auto move = [&] {
+    const auto point = convex::Shape::sphere(0.5).value();
+    constexpr int kFrames = 30, kQueries = 1000;
+    std::size_t found = 0;
+    Vector<ObjectRef> near;
+    double update = 1e30;
+    std::vector<double> first;
+    for (int frame = 0; frame < kFrames; ++frame) {
         for (std::size_t i = 0; i < moving; ++i) {
             places[i].x += 0.01;
             require_ok(world.set_bound(objects[i], Sphere{places[i], 1.0}).has_value(), "a move");
         }
-        return microseconds([&] { require_ok(world.update().has_value(), "an update"); });
+        for (std::size_t n = 0; n < replaced; ++n) {
+            const std::size_t i = random() % moving;
+            require_ok(world.remove(objects[i]).has_value(), "removing");
+            places[i] = place();
+            objects[i] = world.add({.bound = Sphere{places[i], 1.0}}).value();
+        }
+        update = std::min(update, microseconds([&] { require_ok(world.update().has_value(), "an update"); }));
+        first.push_back(microseconds([&] { found += world.raycast({place(), place()}).has_value(); }));
+    }
+    std::nth_element(first.begin(), first.begin() + kFrames / 2, first.end());
+    std::printf("%8zu %8zu %8zu %9.2f %9.2f", count, moving, replaced, update, first[kFrames / 2]);
+    const auto print = [&](auto&& ask) {
+        const double all = microseconds([&] {
+            for (int n = 0; n < kQueries; ++n) ask();
+        });
+        std::printf(" %9.2f", all / kQueries);
     };
-    double update = 1e30;
-    for (int frame = 0; frame < 30; ++frame) update = std::min(update, move());
-    constexpr int kQueries = 1000;
-    std::size_t found = 0;
-    Vector<ObjectRef> near;
-    const double first = microseconds([&] { found += world.raycast({place(), place()}).has_value(); });
-    const double ray = microseconds([&] {
-        for (int n = 0; n < kQueries; ++n) found += world.raycast({place(), place()}).has_value();
+    print([&] { found += world.raycast({place(), place()}).has_value(); });
+    print([&] { world.overlap(Sphere{place(), 2.0}, near), found += near.size(); });
+    print([&] { found += world.closest(Sphere{place(), 2.0}, 20.0).has_value(); });
+    print([&] { found += world.closest(Sphere{place(), 2.0}, 1e9).has_value(); });
+    print([&] {
+        const glm::dvec3 from = place();
+        found += world.cast(point, {glm::dmat3(1.0), from}, {.velocity = place() - from}, {}).value().has_value();
     });
-    const double overlap = microseconds([&] {
-        for (int n = 0; n < kQueries; ++n) world.overlap(Sphere{place(), 2.0}, near), found += near.size();
-    });
-    const double closest = microseconds([&] {
-        for (int n = 0; n < kQueries; ++n) found += world.closest(Sphere{place(), 2.0}, 20.0).has_value();
-    });
-    std::printf("%8zu  %8zu %10.2f %10.2f %10.2f %10.2f %10.2f   (%zu found)\n", count, moving, update, first,
-                ray / kQueries, overlap / kQueries, closest / kQueries, found);
+    std::printf("   (%zu found)\n", found);
     std::fflush(stdout);
 }
 
@@ -201,9 +215,11 @@ void changes(int frames) {
 }
 
 void queries_among_movers() {
-    std::printf("queries among spheres of which some move, µs\n%8s  %8s %10s %10s %10s %10s %10s\n", "objects",
-                "moving", "update", "first ray", "ray", "overlap", "closest");
-    for (const std::size_t moving : {0, 100, 1000, 5000, 10000}) queries(10000, moving, false);
+    std::printf("queries among spheres of which some move, and some of these are replaced in each update, µs\n");
+    std::printf("%8s %8s %8s %9s %9s %9s %9s %9s %9s %9s\n", "objects", "moving", "replaced", "update", "first ray",
+                "ray", "overlap", "closest", "anywhere", "far cast");
+    for (const std::size_t moving : {0, 100, 1000, 10000}) queries(10000, moving, 0);
+    for (const std::size_t count : {1000, 10000}) queries(count, count, count / 100);
 }
 
 }  // namespace crofton::bench

@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/boxtree/box_tree.hpp>
+#include <crofton/collide/bound_contacts.hpp>
 #include <crofton/collide/broadphase.hpp>
+#include <crofton/collide/moved_tree.hpp>
 #include <crofton/collide/narrow_phase.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "counting_memory.hpp"
@@ -258,6 +261,89 @@ TEST_SUITE("collide/tree_query") {
             visit_near(aabb_of(crowd.boxes[0]), bad, tree,
                        [&](boxtree::ItemId) { return static_cast<double>(++visits); });
         visit_near(Aabb(), 1.0, tree, [&](boxtree::ItemId) { return static_cast<double>(++visits); });
+        CHECK(visits == 0);
+    }
+
+    TEST_CASE("the nearest item is found soon within any distance, from far away and from amid the items") {
+        NearMisses random(33);
+        for (const auto orientation : {boxtree::Orientation::aligned, boxtree::Orientation::oriented})
+            for (const double offset : {0.0, 1e7}) {
+                const oracle::Crowd crowd = crowd_of(2000, offset, 34);
+                const auto tree = boxtree::BoxTree::build(crowd.boxes, crowd.layers, {.orientation = orientation});
+                REQUIRE(tree.has_value());
+                std::size_t asked = 0, queries = 0;
+                for (const double limit : {1e2, 1e9, 1e300, std::numeric_limits<double>::infinity()})
+                    for (int query = 0; query < 50; ++query, ++queries) {
+                        const double away = std::exp(random.number(-3.0, 12.0));
+                        const glm::dvec3 place = crowd.boxes[random.index(2000)].center + away * random.direction();
+                        const auto gap_to = [&](const Obb& box) {
+                            return distance(box, Capsule{place, place, 0.0}).distance;
+                        };
+                        double least = limit, expected = limit;
+                        for (const Obb& box : crowd.boxes) expected = std::min(expected, gap_to(box));
+                        visit_near({place, place}, limit, *tree, [&](boxtree::ItemId item) {
+                            ++asked;
+                            return least = std::min(least, gap_to(crowd.boxes[item]));
+                        });
+                        CHECK(least == expected);
+                    }
+                CHECK(asked < 100 * queries);
+            }
+    }
+
+    TEST_CASE("a box that moves far visits all boxes that it may meet, and ends soon at the first") {
+        NearMisses random(35);
+        for (const auto orientation : {boxtree::Orientation::aligned, boxtree::Orientation::oriented})
+            for (const double offset : {0.0, 1e5, 1e7}) {
+                const oracle::Crowd crowd = crowd_of(2000, offset, 36);
+                const auto tree = boxtree::BoxTree::build(crowd.boxes, crowd.layers, {.orientation = orientation});
+                REQUIRE(tree.has_value());
+                std::size_t met = 0, visited = 0, visited_to_first = 0;
+                for (int trial = 0; trial < 100; ++trial) {
+                    const Ray path = random_ray(random, offset * glm::dvec3(1.0, -0.7, 0.3), 90.0);
+                    const double thin = random.index(3) ? 1.0 : 0.0;
+                    const glm::dvec3 half(random.number(0.0, 6.0), thin * random.number(0.0, 6.0), 3.0 * thin);
+                    const double end = std::min(path.max_t, 200.0 / glm::length(path.direction));
+                    // The first of many times at which the moving box meets one at rest.
+                    const auto entry = [&](const Obb& box) -> std::optional<double> {
+                        Aabb near = aabb_of(box);
+                        near = {near.min - half - 1e-3, near.max + half + 1e-3};
+                        if (!mesh::raycast(path, obb_of(near))) return std::nullopt;
+                        for (int k = 0; k <= 100; ++k) {
+                            const double t = 0.01 * k * end;
+                            const Obb moved{path.origin + t * path.direction, glm::mat3(1.0f), glm::vec3(half)};
+                            if (intersects(moved, box)) return t;
+                        }
+                        return std::nullopt;
+                    };
+                    std::vector<boxtree::ItemId> items;
+                    visit_swept(path, half, *tree,
+                                [&](boxtree::ItemId item) { return items.push_back(item), path.max_t; });
+                    std::sort(items.begin(), items.end());
+                    CHECK(std::adjacent_find(items.begin(), items.end()) == items.end());
+                    double first = std::numeric_limits<double>::infinity();
+                    for (boxtree::ItemId item = 0; item < 2000; ++item)
+                        if (const auto t = entry(crowd.boxes[item])) {
+                            ++met;
+                            first = std::min(first, *t);
+                            CHECK(std::binary_search(items.begin(), items.end(), item));
+                        }
+                    visited += items.size();
+                    double least = path.max_t, found = std::numeric_limits<double>::infinity();
+                    visit_swept(path, half, *tree, [&](boxtree::ItemId item) {
+                        ++visited_to_first;
+                        if (const auto t = entry(crowd.boxes[item])) found = least = std::min(least, *t);
+                        return least;
+                    });
+                    CHECK(found == first);
+                }
+                CHECK(met > 1000);
+                CHECK(visited < 3 * met);
+                CHECK(2 * visited_to_first < visited);
+            }
+        int visits = 0;
+        visit_swept(Ray{{}, {0.0, 0.0, 0.0}}, glm::dvec3(1.0), tree_of(crowd_of(10, 0.0, 37)),
+                    [&](boxtree::ItemId) { return ++visits, 0.0; });
         CHECK(visits == 0);
     }
 

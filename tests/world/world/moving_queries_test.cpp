@@ -158,6 +158,63 @@ TEST_SUITE("world/moving queries") {
         CHECK(hits > 200);
     }
 
+    TEST_CASE("a shape that flies far, turning or not, hits first what a cast at each object alone hits first") {
+        NearMisses random(64);
+        for (const double place : {0.0, 1e6}) {
+            World world({.pairs = false});
+            std::vector<ObjectHandle> objects;
+            std::vector<Bound> bounds;
+            for (int i = 0; i < 600; ++i) {
+                bounds.push_back(bound_on_grid(random, 40.0));
+                bounds.back().box.center.x += place;
+                objects.push_back(world.add({.bound = bounds.back()}).value());
+            }
+            for (int frame = 0; frame < 3; ++frame) {
+                for (std::size_t i = 0; i < objects.size(); i += 3) {
+                    bounds[i].box.center.y += 0.125;
+                    REQUIRE(world.set_bound(objects[i], bounds[i]).has_value());
+                }
+                REQUIRE(world.update().has_value());
+            }
+            REQUIRE(world.statistics().moving == 200);
+            const auto cast_at = [&](std::size_t i, const convex::ShapeAtPose& probe, const convex::Motion& motion,
+                                     const convex::CastOptions& options) {
+                const Obb& box = bounds[i].box;
+                const auto shape = bounds[i].kind == BoundKind::sphere ? convex::Shape::sphere(bounds[i].radius)
+                                                                       : convex::Shape::box(box.half_extents);
+                return convex::cast(probe, motion, {*shape, {glm::dmat3(box.axes), box.center}}, {}, options).value();
+            };
+            const auto shape = convex::Shape::box(glm::vec3(0.8f, 0.3f, 0.2f)).value();
+            std::size_t hits = 0, misses = 0;
+            Vector<ShapeHit> all;
+            for (int n = 0; n < 200; ++n) {
+                RigidTransform pose{glm::dmat3(1.0), 45.0 * random.direction()};
+                convex::Motion motion{.velocity = -std::exp(random.number(-4.0, 4.0)) * pose.translation};
+                if (n % 4 == 0) motion.velocity = {0.0, random.number(-90.0, 90.0), 0.0};
+                if (n % 3 == 0) motion.spin = 0.3 * random.direction(), motion.pivot = {0.5, 0.0, 0.0};
+                pose.translation.x += place;
+                convex::CastOptions options{.duration = 90.0 / glm::length(motion.velocity)};
+                options.early_out = n % 5 == 0 ? 0.3 * options.duration : options.duration;
+                std::optional<double> first;
+                std::size_t met = 0;
+                for (std::size_t i = 0; i < objects.size(); ++i) {
+                    const convex::Impact impact = cast_at(i, {shape, pose}, motion, options);
+                    if (impact.result == convex::CastResult::miss) continue;
+                    ++met;
+                    first = std::min(first.value_or(impact.time), impact.time);
+                }
+                const auto hit = world.cast(shape, pose, motion, options).value();
+                REQUIRE(hit.has_value() == first.has_value());
+                if (hit) CHECK(std::abs(hit->time - *first) * glm::length(motion.velocity) < 1e-5);
+                (hit ? hits : misses) += 1;
+                REQUIRE(world.cast_all(shape, pose, motion, options, all).has_value());
+                CHECK(all.size() == met);
+            }
+            CHECK(hits > 50);
+            CHECK(misses > 10);
+        }
+    }
+
     TEST_CASE("many threads may query after an update, each with the answers of a single thread") {
         NearMisses random(63);
         World world({.pairs = false});

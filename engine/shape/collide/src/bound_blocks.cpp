@@ -346,13 +346,13 @@ void FindPartners(const BoundTree& tree, const std::uint32_t* items, const LaneB
     }
 }
 
-// The lanes' bounds are widened by more than all roundings: of the ray's origin, of differences, of products with t.
-HWY_INLINE std::uint32_t lanes_that_meet(const BoundBlock& block, const BlockRay& ray) {
+// The lanes' bounds are widened by more than all roundings: of the ray's origin, of sums, of products with t.
+std::uint32_t LanesAlong(const BoundBlock& block, const BlockRay& ray, double max_t, double* entries) {
     const hn::CappedTag<double, kBoxBlock> d;
     const hn::Rebind<float, decltype(d)> df;
     std::uint32_t bits = 0;
     for (std::size_t l = 0; l < kBoxBlock; l += hn::Lanes(d)) {
-        auto enter = hn::Zero(d), leave = hn::Set(d, ray.max_t);
+        auto enter = hn::Zero(d), leave = hn::Set(d, max_t);
         auto meets = hn::Le(hn::PromoteTo(d, hn::Load(df, block.low[0] + l)),
                             hn::PromoteTo(d, hn::Load(df, block.high[0] + l)));  // the lane is in use
         for (int i = 0; i < 3; ++i) {
@@ -360,7 +360,8 @@ HWY_INLINE std::uint32_t lanes_that_meet(const BoundBlock& block, const BlockRay
             auto low = hn::PromoteTo(d, hn::Load(df, block.low[i] + l)),
                  high = hn::PromoteTo(d, hn::Load(df, block.high[i] + l));
             const auto slack =
-                hn::Mul(hn::Set(d, 1e-11), hn::Add(hn::Abs(origin), hn::Add(hn::Abs(low), hn::Abs(high))));
+                hn::Add(hn::Mul(hn::Set(d, 1e-11), hn::Add(hn::Abs(origin), hn::Add(hn::Abs(low), hn::Abs(high)))),
+                        hn::Set(d, ray.half_size[i] * (1.0 + 1e-11)));
             low = hn::Sub(hn::Sub(low, slack), origin);
             high = hn::Sub(hn::Add(high, slack), origin);
             if (ray.is_flat[i]) {
@@ -371,42 +372,44 @@ HWY_INLINE std::uint32_t lanes_that_meet(const BoundBlock& block, const BlockRay
             enter = hn::Max(enter, hn::Min(a, b));
             leave = hn::Min(leave, hn::Max(a, b));
         }
+        hn::StoreU(enter, d, entries + l);
         bits |= simd::mask_bits(d, hn::And(meets, hn::Le(enter, leave))) << l;
     }
     return bits;
 }
 
-template <class Query>
-std::size_t find_all(const BoundTree& tree, const Query& query, std::uint32_t* items, std::size_t room) {
-    struct Step {
-        std::size_t level;
-        std::uint32_t block;
-    };
-    Step stack[kMaxLevels * kBoxBlock];
-    std::size_t height = 0, count = 0;
-    stack[height++] = {tree.level_count - 1, tree.root};
-    while (height > 0) {
-        const Step step = stack[--height];
-        std::uint32_t lanes = lanes_that_meet(tree.levels[step.level][step.block], query);
-        const std::uint32_t* const children = tree.children[step.level] + step.block * kBoxBlock;
-        for (; lanes != 0; lanes &= lanes - 1) {
-            const std::uint32_t child = children[lowest(lanes)];
-            if (step.level > 0) {
-                stack[height++] = {step.level - 1, child};
-                continue;
-            }
-            if (count == room) return room + 1;
-            items[count++] = child;
+// Differences, squares and sums round by less than 2^-21 of themselves. Differences are limited so that their
+// squares are finite.
+std::uint32_t LanesNear(const BoundBlock& block, const LaneBounds& bounds, float limit, float* squares) {
+    const hn::CappedTag<float, kBoxBlock> d;
+    const auto most = hn::Set(d, limit);
+    std::uint32_t bits = 0;
+    for (std::size_t l = 0; l < kBoxBlock; l += hn::Lanes(d)) {
+        auto squared = hn::Zero(d);
+        const auto in_use = hn::Le(hn::Load(d, block.low[0] + l), hn::Load(d, block.high[0] + l));
+        for (int i = 0; i < 3; ++i) {
+            const auto above = hn::Sub(hn::Load(d, block.low[i] + l), hn::Set(d, bounds.high[i])),
+                       below = hn::Sub(hn::Set(d, bounds.low[i]), hn::Load(d, block.high[i] + l));
+            const auto gap = hn::Min(hn::Max(hn::Zero(d), hn::Max(above, below)), hn::Set(d, 1e17f));
+            squared = hn::Add(squared, hn::Mul(gap, gap));
         }
+        hn::StoreU(squared, d, squares + l);
+        bits |= simd::mask_bits(d, hn::And(in_use, hn::Le(squared, most))) << l;
     }
-    return count;
+    return bits;
 }
 
-std::size_t FindAlong(const BoundTree& tree, const BlockRay& ray, std::uint32_t* items, std::size_t room) {
-    return find_all(tree, ray, items, room);
-}
-std::size_t FindNear(const BoundTree& tree, const LaneBounds& bounds, std::uint32_t* items, std::size_t room) {
-    return find_all(tree, bounds, items, room);
+std::uint32_t LanesThatJumped(const BoundBlock& before, const BoundBlock& now, const float* shift, float far) {
+    const hn::CappedTag<float, kBoxBlock> d;
+    std::uint32_t bits = 0;
+    for (std::size_t l = 0; l < kBoxBlock; l += hn::Lanes(d)) {
+        auto way = hn::Zero(d);
+        for (int i = 0; i < 3; ++i)
+            way = hn::Add(way, hn::Abs(hn::Add(hn::Sub(hn::Load(d, now.low[i] + l), hn::Load(d, before.low[i] + l)),
+                                               hn::Set(d, shift[i]))));
+        bits |= simd::mask_bits(d, hn::Gt(way, hn::Set(d, far))) << l;
+    }
+    return bits;
 }
 
 }  // namespace crofton::collide::HWY_NAMESPACE
@@ -419,8 +422,9 @@ HWY_EXPORT(BoundBoxes);
 HWY_EXPORT(BoundBlocks);
 HWY_EXPORT(FindPairs);
 HWY_EXPORT(FindPartners);
-HWY_EXPORT(FindAlong);
-HWY_EXPORT(FindNear);
+HWY_EXPORT(LanesAlong);
+HWY_EXPORT(LanesNear);
+HWY_EXPORT(LanesThatJumped);
 
 std::uint32_t bound_boxes(BoxBlock& boxes, BoundBlock& bounds) {
     measure_deviation(boxes);
@@ -436,11 +440,15 @@ void find_partners(const BoundTree& tree, const std::uint32_t* items, const Lane
                    SlotPairs& pairs, GrowPairs grow) {
     HWY_DYNAMIC_DISPATCH(FindPartners)(tree, items, bounds, count, pairs, grow);
 }
-std::size_t find_along(const BoundTree& tree, const BlockRay& ray, std::uint32_t* items, std::size_t room) {
-    return HWY_DYNAMIC_DISPATCH(FindAlong)(tree, ray, items, room);
+std::uint32_t lanes_along(const BoundBlock& block, const BlockRay& ray, double max_t, double* entries) {
+    return HWY_DYNAMIC_DISPATCH(LanesAlong)(block, ray, max_t, entries);
 }
-std::size_t find_near(const BoundTree& tree, const LaneBounds& bounds, std::uint32_t* items, std::size_t room) {
-    return HWY_DYNAMIC_DISPATCH(FindNear)(tree, bounds, items, room);
+std::uint32_t lanes_near(const BoundBlock& block, const LaneBounds& bounds, float limit, float* squares) {
+    return HWY_DYNAMIC_DISPATCH(LanesNear)(block, bounds, limit, squares);
+}
+
+std::uint32_t lanes_that_jumped(const BoundBlock& before, const BoundBlock& now, const float (&shift)[3], float far) {
+    return HWY_DYNAMIC_DISPATCH(LanesThatJumped)(before, now, shift, far);
 }
 
 }  // namespace crofton::collide

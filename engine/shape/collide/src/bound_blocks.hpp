@@ -53,16 +53,32 @@ inline constexpr std::size_t kPairRoom = (kCandidates + 1) * kBoxBlock;
 // below the same block or a later one.
 void find_pairs(const BoundTree& tree, std::size_t begin, std::size_t end, SlotPairs& pairs, GrowPairs grow);
 
-// A ray in the bounds' frame. Along flat axes it does not move, or too slowly for its inverse direction.
+// A box that moves along a ray in the bounds' frame. Along flat axes it does not move, or too slowly for its inverse
+// direction.
 struct BlockRay {
-    double origin[3], inverse[3], max_t;
+    double origin[3], inverse[3], half_size[3];
     bool is_flat[3];
 };
 
-// Writes the items whose bounds the ray, or other bounds, meet, and returns how many; more than `room` where there are
-// too many. A ray meets bounds that it misses by less than 1e-11 of the coordinates.
-std::size_t find_along(const BoundTree& tree, const BlockRay& ray, std::uint32_t* items, std::size_t room);
-std::size_t find_near(const BoundTree& tree, const LaneBounds& bounds, std::uint32_t* items, std::size_t room);
+// A bit for each of a block's lanes whose bounds the box meets up to `max_t`, and where, at the earliest. It meets
+// bounds that it misses by less than 1e-11 of the coordinates.
+[[nodiscard]] std::uint32_t lanes_along(const BoundBlock& block, const BlockRay& ray, double max_t, double* entries);
+// A bit for each of a block's lanes whose bounds are within a distance of others, and the square of the least that it
+// may be. `limit` is square_of() the distance.
+[[nodiscard]] std::uint32_t lanes_near(const BoundBlock& block, const LaneBounds& bounds, float limit, float* squares);
+
+// More than the square of a distance, by what rounds in the squares that kernels compare it with, and by more than
+// their least numbers; above all where the distance is beyond 1e18. Negative for a negative distance.
+[[nodiscard]] inline float square_of(double distance) {
+    if (!(distance >= 0.0)) return -1.0f;
+    const auto most = static_cast<float>(std::min(distance, 1e18) * (1.0 + 0x1p-20));
+    return most * most + 1e-36f;
+}
+
+// A bit for each of a block's lanes whose bounds have moved farther than `far` from where they were `before`, around an
+// origin that lies `shift` from the one now: by the sum of their lower ends' components, roughly.
+[[nodiscard]] std::uint32_t lanes_that_jumped(const BoundBlock& before, const BoundBlock& now, const float (&shift)[3],
+                                              float far);
 
 // For each of the items, whose bounds are given: all other items whose bounds meet them, as {i, other item}. In no
 // order. A pair of two of the items comes twice.

@@ -318,7 +318,7 @@ void ItemTree::put(const Entry& entry) {
         parent = block;
         block = levels_[k].children[block * kBoxBlock + lane_for(levels_[k].bounds[block], entry.bounds)];
     }
-    if (entry.level == 0 && levels_[0].counts[block] == kBoxBlock) {
+    if (full_leaves_ == FullLeaves::share_one_more && entry.level == 0 && levels_[0].counts[block] == kBoxBlock) {
         const std::size_t leaves = levels_[1].counts[parent];
         if (leaves == kArrangedLeaves) return add_leaf(parent, entry);
         const std::uint32_t last = levels_[1].children[parent * kBoxBlock + leaves - 1];

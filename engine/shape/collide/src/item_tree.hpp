@@ -14,7 +14,10 @@ namespace crofton::collide {
 // again. Items whose moves make their leaf much larger than it was are put in again, too.
 class ItemTree {
   public:
-    ItemTree() { clear(); }
+    // What belongs into a full leaf splits it, or goes into one leaf more of its node, which is as wide as the node: an
+    // item costs less then, queries more.
+    enum class FullLeaves : std::uint8_t { share_one_more, split };
+    explicit ItemTree(FullLeaves full = FullLeaves::share_one_more) : full_leaves_(full) { clear(); }
 
     void clear();
     // Items are below `count`. New ones are not in the tree. Requires that those that fall away are not.
@@ -40,6 +43,11 @@ class ItemTree {
     // Bounds of all blocks anew, from the leaves'.
     void bound_all();
     void remember_extents();
+    // Of the leaf's bounds when it was made, and of the leaves on average, as of bound_all().
+    [[nodiscard]] float leaf_extent(std::size_t leaf) const { return levels_[0].extents[leaf]; }
+    [[nodiscard]] float mean_leaf_extent() const {
+        return leaf_count() > 0 ? static_cast<float>(remembered_ / static_cast<double>(leaf_count())) : 0.0f;
+    }
     // Whether the leaves have grown much since they were made, or are nearly empty: then an order made anew pays.
     [[nodiscard]] bool is_worn() const;
 
@@ -97,6 +105,7 @@ class ItemTree {
     void bound_marked();
     void put_again(std::size_t level, std::span<const std::uint32_t> moved);
 
+    FullLeaves full_leaves_;
     Level levels_[kMaxLevels];
     std::size_t level_count_ = 2, size_ = 0;
     std::uint32_t root_ = 0;

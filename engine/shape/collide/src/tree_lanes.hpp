@@ -13,6 +13,7 @@ struct LaneRay {
     float inverse[3];  // of the unit direction's components; finite
     float limit;
     float slack = 0.0f;  // 2^20 times what the position may be off by, along an axis, beside its rounding to float
+    float wide[3] = {};  // half the size of a box that moves along the ray
 };
 
 // An axis-aligned box relative to a node's or leaf's origin.
@@ -24,6 +25,11 @@ struct LaneBox {
 // earliest.
 [[nodiscard]] std::uint32_t lanes_along(const boxtree::Node& node, const LaneRay& ray, float* entry);
 [[nodiscard]] std::uint32_t lanes_along(const boxtree::Leaf& leaf, const LaneRay& ray, float* entry);
+
+// A bit for every lane whose axis-aligned bounds may be within the limit of the box, and the least that its distance
+// may be.
+[[nodiscard]] std::uint32_t lanes_near(const boxtree::Node& node, const LaneBox& box, float limit, float* gaps);
+[[nodiscard]] std::uint32_t lanes_near(const boxtree::Leaf& leaf, const LaneBox& box, float limit, float* gaps);
 
 // A bit for every lane whose axis-aligned bounds may meet the box.
 [[nodiscard]] std::uint32_t lanes_within(const boxtree::Node& node, const LaneBox& box);

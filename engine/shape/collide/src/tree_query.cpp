@@ -16,6 +16,7 @@
 
 #include <crofton/mesh/mesh_query.hpp>
 #include <crofton/mesh/ray_box.hpp>
+#include "bound_blocks.hpp"
 #include "tree_lanes.hpp"
 
 namespace crofton::collide {
@@ -101,6 +102,13 @@ LaneBox box_for(const boxtree::Node& node, const boxtree::Axes& axes, const Aabb
     return box;
 }
 
+LaneBox seen_from(const boxtree::Node& node, const boxtree::TreeArrays& tree, const Aabb& bounds) {
+    return box_for(node, tree.axes[node.axes], bounds);
+}
+LaneBox seen_from(const boxtree::Leaf& leaf, const boxtree::TreeArrays&, const Aabb& bounds) {
+    return box_for(leaf, bounds);
+}
+
 template <class Shape>
 void collect(const boxtree::BoxTree& tree, const Shape& shape, const Aabb& bounds, std::uint32_t layers,
              Vector<boxtree::ItemId>& items) {
@@ -118,7 +126,7 @@ void collect(const boxtree::BoxTree& tree, const Shape& shape, const Aabb& bound
 // Rounded outward: the sums by 2^-53 of themselves.
 Aabb grown(const Aabb& bounds, double distance) {
     if (distance == 0.0) return bounds;
-    const double near = std::min(distance, 1e300);  // which may be infinite
+    const double near = std::min(distance, 1e300);
     const glm::dvec3 by = near + 1e-15 * (glm::abs(bounds.min) + glm::abs(bounds.max) + near);
     return {bounds.min - by, bounds.max + by};
 }
@@ -129,11 +137,13 @@ Aabb around(const glm::dvec3& center, const glm::dvec3& half_size) {
     return {center - half_size - error_bound, center + half_size + error_bound};
 }
 
-// A ray, seen from nodes and leaves. Where it runs nearly within a slab, it counts as hardly moving across. What it
-// moves across before it leaves the filter's range is below the filter's error bound.
+// A ray, or a box whose center moves along it, seen from nodes and leaves. Where it runs nearly within a slab, it
+// counts as hardly moving across. What it moves across before it leaves the filter's range is below the filter's error
+// bound.
 class Traveller {
   public:
-    explicit Traveller(const Ray& ray) : origin_(ray.origin), unit_(unit_of(ray.direction)) {
+    explicit Traveller(const Ray& ray, const glm::dvec3& half_size = glm::dvec3(0.0))
+        : origin_(ray.origin), half_size_(half_size), unit_(unit_of(ray.direction)) {
         const glm::dvec3 direction = ray.direction / unit_;
         length_ = glm::length(direction);
         speed_ = direction / length_;
@@ -152,7 +162,8 @@ class Traveller {
     }
     // Along a node's axes where they are not the world's: what turning rounds is below the filter's error bound as
     // well.
-    [[nodiscard]] LaneRay seen_from(const boxtree::Node& node, const boxtree::Axes& axes, float limit) const {
+    [[nodiscard]] LaneRay seen_from(const boxtree::Node& node, const boxtree::TreeArrays& tree, float limit) const {
+        const boxtree::Axes& axes = tree.axes[node.axes];
         if (axes.rounding == 0.0) return seen_from(node, limit);
         double offset[3];
         for (int k = 0; k < 3; ++k) offset[k] = origin_[k] - node.origin[k];
@@ -160,24 +171,30 @@ class Traveller {
         for (unsigned k = 0; k < 3; ++k) {
             ray.origin[k] = static_cast<float>(boxtree::along(axes, k, offset));
             ray.inverse[k] = inverse_of(boxtree::along(axes, k, &speed_.x));
+            ray.wide[k] = 0.0f;
+            for (int j = 0; j < 3; ++j) ray.wide[k] += static_cast<float>(std::abs(axes.rows[k][j]) * half_size_[j]);
         }
         ray.limit = limit;
         ray.slack = slack_;
         return ray;
     }
+    [[nodiscard]] LaneRay seen_from(const boxtree::Leaf& leaf, const boxtree::TreeArrays&, float limit) const {
+        return seen_from(leaf, limit);
+    }
+
+  private:
     template <class Block>
     [[nodiscard]] LaneRay seen_from(const Block& block, float limit) const {
         LaneRay ray;
         for (int k = 0; k < 3; ++k) {
             ray.origin[k] = static_cast<float>(origin_[k] - block.origin[k]);
             ray.inverse[k] = inverse_[static_cast<std::size_t>(k)];
+            ray.wide[k] = static_cast<float>(half_size_[k]);
         }
         ray.limit = limit;
         ray.slack = slack_;
         return ray;
     }
-
-  private:
     [[nodiscard]] static float inverse_of(double speed) {
         return static_cast<float>(std::abs(speed) < 1e-18 ? std::copysign(1e18, speed) : 1.0 / speed);
     }
@@ -188,27 +205,97 @@ class Traveller {
         return std::max(m.x, std::max(m.y, m.z)) < 0x1p500 ? 1.0 : 0x1p600;
     }
 
-    glm::dvec3 origin_;
+    glm::dvec3 origin_, half_size_;
     double unit_, length_;  // of the direction; the length in units
     glm::dvec3 speed_;
     std::array<float, 3> inverse_;
     float slack_ = 0.0f;
 };
 
-struct RayStep {
+// What is to be visited, and at what distance it begins.
+struct Step {
     float entry;
     std::uint32_t child;
 };
-// Beside kLeafBit, in RayStep::child: the rest is an item.
+// Beside kLeafBit, in Step::child: the rest is an item.
 constexpr std::uint32_t kItemBit = 0x40000000u;
+
+}  // namespace
+
+namespace {
+
+// Visits what begins before the limit, nearest first; what is visited may lessen the limit. lanes_of(block, limit,
+// entries): those that may begin before it, and where. visit_leaf(leaf, lanes, entries, push): push(entry, item) has
+// the item visited in its turn, by visit_item(item). Both end the walk by returning a negative limit.
+template <class LanesOf, class VisitLeaf, class VisitItem>
+void walk_nearest_first(const boxtree::TreeArrays& tree, float limit, std::uint32_t layers, LanesOf lanes_of,
+                        VisitLeaf visit_leaf, VisitItem visit_item) {
+    Stack<Step> stack(tree.height);
+    stack.push({0.0f, 0});
+    while (!stack.is_empty()) {
+        const Step step = stack.pop();
+        if (step.entry > limit) continue;
+        const std::size_t base = stack.size();
+        const auto push = [&](float entry, std::uint32_t child) {  // the nearest goes on top
+            stack.push({});
+            std::size_t place = stack.size() - 1;
+            for (; place > base && stack[place - 1].entry < entry; --place) stack[place] = stack[place - 1];
+            stack[place] = {entry, child};
+        };
+        std::array<float, kWidth> entry;
+        if (step.child & boxtree::kLeafBit) {
+            const boxtree::LeafId id = step.child & ~boxtree::kLeafBit;
+            if (id & kItemBit) {
+                limit = visit_item(id & ~kItemBit);
+            } else {
+                const std::uint32_t lanes = lanes_of(tree.leaves[id], limit, entry.data());
+                limit = visit_leaf(id, lanes, entry, push);
+            }
+            if (!(limit >= 0.0f)) return;
+            continue;
+        }
+        const boxtree::Node& node = tree.nodes[step.child];
+        for_each_lane(lanes_of(node, limit, entry.data()), [&](unsigned lane) {
+            if ((node.layers_any[lane] & layers) != 0) push(entry[lane], node.child[lane]);
+        });
+    }
+}
+
+// Has each item of a leaf's lanes visited in its turn.
+template <class Push>
+void push_items(const boxtree::TreeArrays& tree, boxtree::LeafId id, std::uint32_t lanes, std::uint32_t layers,
+                const std::array<float, kWidth>& entry, Push push) {
+    for_each_lane(lanes, [&](unsigned lane) {
+        if (tree.leaves[id].layers[lane] & layers)
+            push(entry[lane], tree.slot_items[std::size_t{id} * kWidth + lane] | boxtree::kLeafBit | kItemBit);
+    });
+}
 
 }  // namespace
 
 void visit_near(const Aabb& bounds, double distance, const boxtree::BoxTree& tree, NearVisitor visit,
                 std::uint32_t layers) {
-    if (!is_finite(bounds.min) || !is_finite(bounds.max)) return;
-    Aabb near = grown(bounds, distance);
+    if (!is_finite(bounds.min) || !is_finite(bounds.max) || !(distance >= 0.0)) return;
     const boxtree::TreeArrays arrays = boxtree::arrays_of(tree);
+    const glm::dvec3 size = bounds.max - bounds.min;
+    if (distance > std::max({size.x, size.y, size.z})) {
+        const auto limit = [&] { return square_of(distance); };
+        walk_nearest_first(
+            arrays, limit(), layers,
+            [&](const auto& block, float most, float* squares) {
+                return lanes_near(block, seen_from(block, arrays, bounds), most, squares);
+            },
+            [&](boxtree::LeafId id, std::uint32_t lanes, const auto& squares, const auto& push) {
+                push_items(arrays, id, lanes, layers, squares, push);
+                return limit();
+            },
+            [&](boxtree::ItemId item) {
+                distance = std::min(distance, visit(item));
+                return limit();
+            });
+        return;
+    }
+    const Aabb near = grown(bounds, distance);
     Stack<std::uint32_t> stack(arrays.height);
     stack.push(0);
     while (!stack.is_empty() && distance >= 0.0) {
@@ -216,15 +303,13 @@ void visit_near(const Aabb& bounds, double distance, const boxtree::BoxTree& tre
         if (child & boxtree::kLeafBit) {
             const boxtree::LeafId id = child & ~boxtree::kLeafBit;
             const boxtree::Leaf& leaf = arrays.leaves[id];
-            const double before = distance;
             for_each_item(arrays, id, lanes_within(leaf, box_for(leaf, near)), layers, [&](boxtree::ItemId item) {
                 if (distance >= 0.0) distance = std::min(distance, visit(item));
             });
-            if (distance < before) near = grown(bounds, distance);
             continue;
         }
         const boxtree::Node& node = arrays.nodes[child];
-        for_each_lane(lanes_within(node, box_for(node, arrays.axes[node.axes], near)), [&](unsigned lane) {
+        for_each_lane(lanes_within(node, seen_from(node, arrays, near)), [&](unsigned lane) {
             if (node.layers_any[lane] & layers) stack.push(node.child[lane]);
         });
     }
@@ -253,45 +338,24 @@ void overlapping(const boxtree::BoxTree& tree, const Capsule& shape, Vector<boxt
 
 namespace {
 
-// Visits children nearest first, as long as they begin before `max_t`, which what is visited may lessen.
-// visit_leaf(leaf, lanes, entries, push): of the lanes that the ray may meet; push(entry, item) has the item visited in
-// its turn, by visit_item(item).
+// As walk_nearest_first() along a ray, up to `max_t`, which the visitors may lessen.
 template <class VisitLeaf, class VisitItem>
 void walk_along(const boxtree::TreeArrays& tree, const Traveller& traveller, const double& max_t, std::uint32_t layers,
                 VisitLeaf visit_leaf, VisitItem visit_item) {
-    float limit = traveller.distance(max_t);
-    Stack<RayStep> stack(tree.height);
-    stack.push({0.0f, 0});
-    while (!stack.is_empty()) {
-        const RayStep step = stack.pop();
-        if (step.entry > limit) continue;
-        const std::size_t base = stack.size();
-        const auto push = [&](float entry, std::uint32_t child) {  // the nearest goes on top
-            stack.push({});
-            std::size_t place = stack.size() - 1;
-            for (; place > base && stack[place - 1].entry < entry; --place) stack[place] = stack[place - 1];
-            stack[place] = {entry, child};
-        };
-        std::array<float, kWidth> entry;
-        if (step.child & boxtree::kLeafBit) {
-            const boxtree::LeafId id = step.child & ~boxtree::kLeafBit;
-            if (id & kItemBit) {
-                visit_item(id & ~kItemBit);
-            } else {
-                const boxtree::Leaf& leaf = tree.leaves[id];
-                const std::uint32_t lanes = lanes_along(leaf, traveller.seen_from(leaf, limit), entry.data());
-                visit_leaf(id, lanes, entry, push);
-            }
-            if (!(max_t >= 0.0)) return;
-            limit = traveller.distance(max_t);
-            continue;
-        }
-        const boxtree::Node& node = tree.nodes[step.child];
-        for_each_lane(lanes_along(node, traveller.seen_from(node, tree.axes[node.axes], limit), entry.data()),
-                      [&](unsigned lane) {
-                          if ((node.layers_any[lane] & layers) != 0) push(entry[lane], node.child[lane]);
-                      });
-    }
+    const auto limit = [&] { return max_t >= 0.0 ? traveller.distance(max_t) : -1.0f; };
+    walk_nearest_first(
+        tree, limit(), layers,
+        [&](const auto& block, float most, float* entry) {
+            return lanes_along(block, traveller.seen_from(block, tree, most), entry);
+        },
+        [&](boxtree::LeafId id, std::uint32_t lanes, const auto& entry, const auto& push) {
+            visit_leaf(id, lanes, entry, push);
+            return limit();
+        },
+        [&](boxtree::ItemId item) {
+            visit_item(item);
+            return limit();
+        });
 }
 
 // The traveller sees the tree's own boxes; box_of(item) is the item's box where the ray meets it. visit(item, t)
@@ -329,10 +393,7 @@ void visit_along(const Ray& ray, const boxtree::BoxTree& trees, FunctionRef<Move
     walk_along(
         upper, traveller, rest.max_t, layers,
         [&](boxtree::LeafId id, std::uint32_t lanes, const auto& entry, const auto& push) {
-            for_each_lane(lanes, [&](unsigned lane) {
-                if (upper.leaves[id].layers[lane] & layers)
-                    push(entry[lane], upper.slot_items[std::size_t{id} * kWidth + lane] | boxtree::kLeafBit | kItemBit);
-            });
+            push_items(upper, id, lanes, layers, entry, push);
         },
         [&](boxtree::ItemId item) {
             const auto [tree, move] = tree_of(item);
@@ -342,6 +403,44 @@ void visit_along(const Ray& ray, const boxtree::BoxTree& trees, FunctionRef<Move
                 [&, boxes = tree->boxes, by = move](boxtree::ItemId in_tree) { return (*by)(boxes[in_tree]); },
                 [&](boxtree::ItemId in_tree, double t) { return visit(item, in_tree, t); }, layers);
         });
+}
+
+namespace {
+
+template <class Visit>
+void visit_swept(double& max_t, const Traveller& traveller, const boxtree::TreeArrays& tree, Visit visit,
+                 std::uint32_t layers) {
+    walk_along(
+        tree, traveller, max_t, layers,
+        [&](boxtree::LeafId id, std::uint32_t lanes, const auto& entry, const auto& push) {
+            push_items(tree, id, lanes, layers, entry, push);
+        },
+        [&](boxtree::ItemId item) { max_t = visit(item); });
+}
+
+}  // namespace
+
+void visit_swept(const Ray& path, const glm::dvec3& half_size, const boxtree::BoxTree& tree, NearVisitor visit,
+                 std::uint32_t layers) {
+    if (!validate(path)) return;
+    double max_t = path.max_t;
+    visit_swept(max_t, Traveller(path, half_size), boxtree::arrays_of(tree), visit, layers);
+}
+
+void visit_swept(const Ray& path, const glm::dvec3& half_size, const boxtree::BoxTree& trees,
+                 FunctionRef<MovedTree(boxtree::ItemId)> tree_of,
+                 FunctionRef<double(boxtree::ItemId, boxtree::ItemId)> visit, std::uint32_t layers) {
+    if (!validate(path)) return;
+    double max_t = path.max_t;
+    const Traveller traveller(path, half_size);
+    const auto visit_tree = [&](boxtree::ItemId item) {
+        if (const auto [tree, move] = tree_of(item); tree != nullptr)
+            visit_swept(
+                max_t, traveller.from(move->back(path.origin), move->rounding(path.origin)), *tree,
+                [&](boxtree::ItemId in_tree) { return visit(item, in_tree); }, layers);
+        return max_t;
+    };
+    visit_swept(max_t, traveller, boxtree::arrays_of(trees), visit_tree, layers);
 }
 
 std::optional<BoxHit> raycast(const Ray& ray, const boxtree::BoxTree& tree, std::uint32_t layers) {

@@ -93,7 +93,7 @@ struct EvenRay {
 double gap_between(const Aabb& a, const Obb& box) {
     const glm::dvec3 radius(glm::length(glm::dvec3(box.half_extents)) * (1.0 + 2e-4));
     const glm::dvec3 gap = glm::max(glm::max(box.center - radius - a.max, a.min - box.center - radius), 0.0);
-    return std::max({gap.x, gap.y, gap.z});
+    return glm::length(gap) * (1.0 - 1e-15);
 }
 
 // Returns an upper bound of the distance of two points of the boxes.
@@ -119,14 +119,41 @@ void World::State::visit_along(const Ray& ray, const QueryFilter& filter, collid
         if (rest.max_t >= 0.0 && is_ground(object, filter.layers)) rest.max_t = visit(object, 0.0);
     if (!(rest.max_t >= 0.0)) return;
     collide::visit_along(rest, index.tree(), visit_living, filter.layers);
+    if (!(rest.max_t >= 0.0)) return;
     const cull::MovingBoxes& moving = index.moving();
-    index.visit_movers_along(rest, [&](std::size_t i) {
-        if (rest.max_t < 0.0) return false;
-        if ((index.layers(moving.items()[i]) & filter.layers) == 0) return true;
-        if (const auto t = mesh::raycast(rest, moving.boxes()[i])) visit_living(moving.items()[i], *t);
-        return true;
+    index.visit_movers_along(rest, glm::dvec3(0.0), [&](std::uint32_t i) {
+        if ((index.layers(moving.items()[i]) & filter.layers) != 0)
+            if (const auto t = mesh::raycast(rest, moving.boxes()[i])) visit_living(moving.items()[i], *t);
+        return rest.max_t;
     });
+    if (!(rest.max_t >= 0.0)) return;
     regions.visit_along(rest, filter.layers, visit);
+}
+
+void World::State::visit_swept(const Ray& path, const glm::dvec3& half_size, const QueryFilter& filter,
+                               collide::NearVisitor visit) const {
+    Ray rest = path;
+    const auto visit_living = [&](std::uint32_t object) {
+        if (table.objects[object].alive && !object_shapes.is_unbounded(object) && !is_ignored(filter, object))
+            rest.max_t = visit(object);
+        return rest.max_t;
+    };
+    for (const std::uint32_t object : object_shapes.unbounded())
+        if (rest.max_t >= 0.0 && is_ground(object, filter.layers) && !is_ignored(filter, object))
+            rest.max_t = visit(object);
+    if (!(rest.max_t >= 0.0)) return;
+    collide::visit_swept(rest, half_size, index.tree(), visit_living, filter.layers);
+    if (!(rest.max_t >= 0.0)) return;
+    const cull::MovingBoxes& moving = index.moving();
+    index.visit_movers_along(rest, half_size, [&](std::uint32_t i) {
+        if ((index.layers(moving.items()[i]) & filter.layers) != 0) visit_living(moving.items()[i]);
+        return rest.max_t;
+    });
+    if (!(rest.max_t >= 0.0)) return;
+    regions.visit_swept(rest, half_size, filter.layers, [&](std::uint32_t object) {
+        if (!is_ignored(filter, object)) rest.max_t = visit(object);
+        return rest.max_t;
+    });
 }
 
 std::optional<ObjectHit> World::State::own_shape_hit(const Ray& ray, std::uint32_t id) const {
@@ -286,10 +313,10 @@ void World::State::visit_bounded_near(const Aabb& bounds, double distance, std::
     };
     collide::visit_near(bounds, distance, index.tree(), visit_living, layers);
     const cull::MovingBoxes& moving = index.moving();
-    index.visit_movers_near(bounds, distance, [&](std::size_t i) {
+    index.visit_movers_near(bounds, distance, [&](std::uint32_t i) {
         if ((index.layers(moving.items()[i]) & layers) != 0 && gap_between(bounds, moving.boxes()[i]) <= distance)
             visit_living(moving.items()[i]);
-        return true;
+        return distance;
     });
 }
 
@@ -329,17 +356,16 @@ void World::overlap(const collide::Capsule& probe, Vector<ObjectRef>& found, con
     state_->overlap(probe, found, filter);
 }
 
-// A limit that is rounded to 0 grows too; one without end is beyond all that boxes and shapes may be.
-constexpr double kLeastGrowth = 1e-300, kFarthest = 1e300;
+// One without end is beyond all that boxes and shapes may be.
+constexpr double kFarthest = 1e300;
 
-// Within a small distance first: the tree is entered in no order of nearness. Meshes take long, so they are asked last,
-// within a distance that one of their boxes keeps to.
+// Meshes take long, so they are asked last, within a distance that one of their boxes keeps to.
 std::optional<ClosestObject> World::State::closest(const Aabb& bounds, double max_distance, const QueryFilter& filter,
                                                    GapTo gap_to_object) const {
     std::optional<ClosestObject> nearest;
     if (!(max_distance >= 0.0)) return nearest;
-    max_distance = std::min(max_distance, kFarthest);
-    double rest = 0.0;
+    double rest = std::min(max_distance, kFarthest);
+    bool has_meshes = false;
     const auto look_at = [&](std::uint32_t id) {
         const auto [gap, triangle, child] = gap_to_object(id, rest);
         const bool nearer = !nearest || gap.distance < nearest->distance ||
@@ -350,18 +376,14 @@ std::optional<ClosestObject> World::State::closest(const Aabb& bounds, double ma
         return rest = gap.distance;
     };
     const auto is_mesh = [&](std::uint32_t id) { return !has_own_shape(id) && mesh_of_object(id).mesh != nullptr; };
-    for (double limit = max_distance * 0x1p-12;; limit = std::min(std::max(8.0 * limit, kLeastGrowth), max_distance)) {
-        rest = limit;
-        bool has_meshes = false;
-        visit_near(bounds, limit, filter, [&](std::uint32_t id) {
-            if (!is_mesh(id)) return look_at(id);
-            has_meshes = true;
-            return rest = std::min(rest, farthest(bounds, aabb_of(box_of_object(id))));
-        });
-        if (has_meshes)
-            visit_near(bounds, rest, filter, [&](std::uint32_t id) { return is_mesh(id) ? look_at(id) : rest; });
-        if (nearest || limit == max_distance) return nearest;
-    }
+    visit_near(bounds, rest, filter, [&](std::uint32_t id) {
+        if (!is_mesh(id)) return look_at(id);
+        has_meshes = true;
+        return rest = std::min(rest, farthest(bounds, aabb_of(box_of_object(id))));
+    });
+    if (has_meshes)
+        visit_near(bounds, rest, filter, [&](std::uint32_t id) { return is_mesh(id) ? look_at(id) : rest; });
+    return nearest;
 }
 
 template <class Shape>

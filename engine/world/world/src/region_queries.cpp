@@ -23,18 +23,33 @@ void prefetch(const Attachment& region) {
 
 }  // namespace
 
+collide::MovedTree Regions::tree_of(boxtree::ItemId item) const {
+    const Attachment& region = attachments_[slot_of_item_[item]];
+    return region.alive ? collide::MovedTree{&region.tree.arrays, &region.move} : collide::MovedTree{};
+}
+
 void Regions::visit_along(const Ray& ray, std::uint32_t layers, collide::RayVisitor visit) const {
     if (tree_.item_count() == 0) return;
     double end = ray.max_t;
     collide::visit_along(
-        ray, tree_,
-        [&](boxtree::ItemId item) {
-            const Attachment& region = attachments_[slot_of_item_[item]];
-            return region.alive ? collide::MovedTree{&region.tree.arrays, &region.move} : collide::MovedTree{};
-        },
+        ray, tree_, [&](boxtree::ItemId item) { return tree_of(item); },
         [&](boxtree::ItemId item, boxtree::ItemId object, double t) {
             const Attachment& region = attachments_[slot_of_item_[item]];
             if (region.is_shown(object)) end = visit(region.first + object, t);
+            return end;
+        },
+        layers);
+}
+
+void Regions::visit_swept(const Ray& path, const glm::dvec3& half_size, std::uint32_t layers,
+                          collide::NearVisitor visit) const {
+    if (tree_.item_count() == 0) return;
+    double end = path.max_t;
+    collide::visit_swept(
+        path, half_size, tree_, [&](boxtree::ItemId item) { return tree_of(item); },
+        [&](boxtree::ItemId item, boxtree::ItemId object) {
+            const Attachment& region = attachments_[slot_of_item_[item]];
+            if (region.is_shown(object)) end = visit(region.first + object);
             return end;
         },
         layers);

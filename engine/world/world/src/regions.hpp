@@ -2,7 +2,7 @@
 // The regions that are attached to a World.
 #pragma once
 #include <crofton/boxtree/box_tree.hpp>
-#include <crofton/collide/broadphase.hpp>
+#include <crofton/collide/moved_tree.hpp>
 #include <crofton/core/memory.hpp>
 #include <crofton/cull/moved_tree.hpp>
 #include <crofton/geometry/move.hpp>
@@ -107,6 +107,8 @@ class Regions {
     // As the World's own of these names, for the regions' objects. The visitors get indices. A ray's visitor is called
     // for boxes that the ray meets.
     void visit_along(const Ray& ray, std::uint32_t layers, collide::RayVisitor visit) const;
+    void visit_swept(const Ray& path, const glm::dvec3& half_size, std::uint32_t layers,
+                     collide::NearVisitor visit) const;
     void visit_near(const Aabb& bounds, double distance, std::uint32_t layers, collide::NearVisitor visit) const;
     // Adds what a view sees to an answer.
     void find_visible(const RegionQuery& query, WholeView& result) const;
@@ -120,6 +122,7 @@ class Regions {
         ObjectHandle object;
         bool hidden = false;
     };
+    [[nodiscard]] collide::MovedTree tree_of(boxtree::ItemId item) const;  // none where it is detached
     [[nodiscard]] std::uint32_t slot_of(std::uint32_t index) const {
         return page_slots_[(index - kFirstRegionIndex) / kPage];
     }

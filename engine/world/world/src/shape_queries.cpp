@@ -36,21 +36,38 @@ Aabb bounds_of(const convex::Shape& shape, const RigidTransform& pose) {
     return {center - half_size, center + half_size};
 }
 
-// All that the shape passes in the time: a sphere around its pivot, or the box at both ends.
-Aabb swept_bounds(const convex::Shape& shape, const RigidTransform& pose, const convex::Motion& motion, double time,
-                  double tolerance) {
-    Aabb bounds = bounds_of(shape, pose);
-    if (motion.spin != glm::dvec3(0.0)) {
-        const glm::dvec3 pivot = pose.rotation * motion.pivot + pose.translation;
-        const double half_size =
-            glm::length(shape.bounds().half_extents()) + glm::length(shape.bounds().center() - motion.pivot);
-        bounds = {pivot - half_size * (1.0 + 1e-5), pivot + half_size * (1.0 + 1e-5)};
+// All that the shape passes in a time: a box whose center moves along a path.
+struct SweptBox {
+    Ray path;
+    glm::dvec3 half_size;
+
+    // A sphere around its pivot where it turns.
+    SweptBox(const convex::Shape& shape, const RigidTransform& pose, const convex::Motion& motion, double time,
+             double tolerance) {
+        Aabb bounds = bounds_of(shape, pose);
+        if (motion.spin != glm::dvec3(0.0)) {
+            const glm::dvec3 pivot = pose.rotation * motion.pivot + pose.translation;
+            const double radius =
+                glm::length(shape.bounds().half_extents()) + glm::length(shape.bounds().center() - motion.pivot);
+            bounds = {pivot - radius * (1.0 + 1e-5), pivot + radius * (1.0 + 1e-5)};
+        }
+        path = {bounds.center(), motion.velocity, time};
+        const glm::dvec3 size = glm::abs(bounds.min) + glm::abs(bounds.max) + glm::abs(time * motion.velocity);
+        half_size = bounds.half_extents() + tolerance + 1e-9 * size;
     }
-    const glm::dvec3 way = time * motion.velocity;
-    bounds.include(Aabb{bounds.min + way, bounds.max + way});
-    const glm::dvec3 margin = tolerance + 1e-9 * (glm::abs(bounds.min) + glm::abs(bounds.max));
-    return {bounds.min - margin, bounds.max + margin};
-}
+    // Of the box at both ends.
+    [[nodiscard]] Aabb bounds() const {
+        const glm::dvec3 way = path.max_t * path.direction;
+        Aabb bounds{path.origin - half_size, path.origin + half_size};
+        bounds.include(Aabb{bounds.min + way, bounds.max + way});
+        return bounds;
+    }
+    // Whether it leaves its own size so far behind that all around both ends would be too much.
+    [[nodiscard]] bool is_long() const {
+        const glm::dvec3 way = glm::abs(path.max_t * path.direction);
+        return std::max({way.x, way.y, way.z}) > 4.0 * std::max({half_size.x, half_size.y, half_size.z});
+    }
+};
 
 // Objects that a cast begins in contact with. Of very many the first are enough: the others have the same normals.
 class TouchedObjects {
@@ -162,19 +179,21 @@ struct World::State::Sweep {
         hit.distance = impact.distance;
         return hit;
     }
-    // Calls visit(id, stand, impact) for each object that the shape may meet first, in no order. The visitor returns
-    // the time up to which others are of interest.
+    // Calls visit(id, stand, impact) for each object that the shape may meet first, near ones roughly first. The
+    // visitor returns the time up to which others are of interest.
     template <class Visit>
     void visit_met(std::span<const convex::ShapeAtPose> touched, Visit visit) const {
         convex::CastOptions rest = options;
-        const Aabb swept = swept_bounds(shape.shape, shape.pose, motion, options.duration, options.tolerance);
-        world.visit_near(swept, 0.0, filter, [&](std::uint32_t id) {
-            const world::QueryShape stand = world.query_shape_of(id);
-            if (!stand.pose) return 0.0;
-            const auto impact = convex::cast(shape, motion, stand.placed(), {}, rest, {{}, touched});
-            if (impact && impact->result != convex::CastResult::miss) rest.early_out = visit(id, stand, *impact);
-            return 0.0;
-        });
+        const SweptBox swept(shape.shape, shape.pose, motion, options.duration, options.tolerance);
+        const auto look_at = [&](std::uint32_t id) {
+            if (const world::QueryShape stand = world.query_shape_of(id); stand.pose) {
+                const auto impact = convex::cast(shape, motion, stand.placed(), {}, rest, {{}, touched});
+                if (impact && impact->result != convex::CastResult::miss) rest.early_out = visit(id, stand, *impact);
+            }
+            return std::min(rest.early_out, options.duration);
+        };
+        if (swept.is_long()) return world.visit_swept(swept.path, swept.half_size, filter, look_at);
+        world.visit_near(swept.bounds(), 0.0, filter, [&](std::uint32_t id) { return look_at(id), 0.0; });
     }
     [[nodiscard]] std::optional<ShapeHit> find_first(std::span<const convex::ShapeAtPose> touched) const {
         std::optional<ShapeHit> first;

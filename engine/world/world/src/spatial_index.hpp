@@ -115,15 +115,14 @@ class SpatialIndex {
     void keep_no_box(ItemId item);
     [[nodiscard]] const cull::MovingBoxes& moving() const { return moving_.boxes(); }
 
-    // Calls visit(entry) for entries of moving(), in order, while it answers true: all whose boxes the ray may meet, or
-    // that may be within a distance of `bounds`, and maybe others. Any thread may ask.
-    template <class Visit>
-    void visit_movers_along(const Ray& ray, Visit visit) const {
-        visit_movers([&](std::span<std::uint32_t> found) { return mover_tree().along(ray, found); }, visit);
+    // Calls visit(entry) for entries of moving(), near ones roughly first: all whose boxes a box may meet whose center
+    // moves along a ray, or that may be within a distance of `bounds`, and maybe others. It returns how far others are
+    // of interest; a negative number ends the visit. Any thread may ask.
+    void visit_movers_along(const Ray& ray, const glm::dvec3& half_size, collide::MovingTree::Visitor visit) const {
+        if (!visit_few_movers(visit)) mover_tree().visit_along(ray, half_size, visit);
     }
-    template <class Visit>
-    void visit_movers_near(const Aabb& bounds, double distance, Visit visit) const {
-        visit_movers([&](std::span<std::uint32_t> found) { return mover_tree().near(bounds, distance, found); }, visit);
+    void visit_movers_near(const Aabb& bounds, double distance, collide::MovingTree::Visitor visit) const {
+        if (!visit_few_movers(visit)) mover_tree().visit_near(bounds, distance, visit);
     }
 
   private:
@@ -169,16 +168,14 @@ class SpatialIndex {
     void bring_to_rest(const Settings& settings, Changes& changes, Executor& executor);
     void build_tree(std::span<const ItemId> entering, Executor& executor);
 
-    // Few are looked at one by one, and where many are found, all are.
-    template <class Find, class Visit>
-    void visit_movers(Find find, Visit visit) const {
-        constexpr std::size_t kFew = 64, kMostFound = 512;
-        std::uint32_t found[kMostFound];
-        const std::size_t size = moving().size(), count = size > kFew ? find(std::span(found)) : size;
-        const bool all = size <= kFew || count > kMostFound;
-        if (!all) std::sort(found, found + count);
-        for (std::size_t n = 0; n < (all ? size : count); ++n)
-            if (!visit(all ? n : found[n])) return;
+    // All of them one by one. False, and nothing done, if they are many.
+    bool visit_few_movers(collide::MovingTree::Visitor visit) const {
+        constexpr std::size_t kFew = 64;
+        const std::size_t size = moving().size();
+        if (size > kFew) return false;
+        for (std::size_t n = 0; n < size; ++n)
+            if (!(visit(static_cast<std::uint32_t>(n)) >= 0.0)) break;
+        return true;
     }
     [[nodiscard]] const collide::MovingTree& mover_tree() const;
 

@@ -206,7 +206,11 @@ struct World::State {
     [[nodiscard]] bool is_ignored(const QueryFilter& filter, std::uint32_t object) const;
     // Visits objects whose boxes the ray meets; the visitor answers how far along the ray others are of interest.
     void visit_along(const Ray& ray, const QueryFilter& filter, collide::RayVisitor visit) const;
-    // Visits objects whose boxes are within `distance` of `bounds`, and some others.
+    // Visits objects whose boxes a box may meet whose center moves along the path, and some others, near ones roughly
+    // first; the visitor answers likewise.
+    void visit_swept(const Ray& path, const glm::dvec3& half_size, const QueryFilter& filter,
+                     collide::NearVisitor visit) const;
+    // Visits objects whose boxes are within `distance` of `bounds`, and some others, near ones roughly first.
     void visit_near(const Aabb& bounds, double distance, const QueryFilter& filter, collide::NearVisitor visit) const;
     void visit_bounded_near(const Aabb& bounds, double distance, std::uint32_t layers,
                             collide::NearVisitor visit) const;

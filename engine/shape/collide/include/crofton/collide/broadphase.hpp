@@ -133,7 +133,8 @@ void overlapping(const boxtree::BoxTree& tree, const Capsule& shape, Vector<boxt
 using NearVisitor = FunctionRef<double(boxtree::ItemId item)>;
 
 // Visits all items whose boxes are no farther from `bounds` than `distance` ≥ 0 and the visitor's last result, and some
-// that are a little farther. The order is always the same. If the bounds are empty or not finite, it visits nothing.
+// that are a little farther. Near items come roughly first where the distance is larger than the bounds. The order is
+// always the same. If the bounds are empty or not finite, it visits nothing.
 void visit_near(const Aabb& bounds, double distance, const boxtree::BoxTree& tree, NearVisitor visit,
                 std::uint32_t layers = ~0u);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Tests a ray against trees whose boxes are stored relative to an origin.
+// Tests a ray, or a box that moves, against trees whose boxes may be stored relative to an origin.
 #pragma once
 #include <crofton/boxtree/tree_arrays.hpp>
 #include <crofton/collide/broadphase.hpp>
@@ -18,5 +18,13 @@ struct MovedTree {
 // trees come first. visit(item, item of its tree, t).
 void visit_along(const Ray& ray, const boxtree::BoxTree& trees, FunctionRef<MovedTree(boxtree::ItemId)> tree_of,
                  FunctionRef<double(boxtree::ItemId, boxtree::ItemId, double)> visit, std::uint32_t layers = ~0u);
+
+// Visits all items whose boxes a box may meet whose center moves along a ray, up to the visitor's last result, and some
+// that it does not meet. Near items come roughly first. A negative result stops the visit.
+void visit_swept(const Ray& path, const glm::dvec3& half_size, const boxtree::BoxTree& tree, NearVisitor visit,
+                 std::uint32_t layers = ~0u);
+void visit_swept(const Ray& path, const glm::dvec3& half_size, const boxtree::BoxTree& trees,
+                 FunctionRef<MovedTree(boxtree::ItemId)> tree_of,
+                 FunctionRef<double(boxtree::ItemId, boxtree::ItemId)> visit, std::uint32_t layers = ~0u);
 
 }  // namespace crofton::collide
