@@ -38,7 +38,10 @@ fn numbers_that_are_none_end_no_call_without_a_name() {
         told("shapes", Shape::mesh(&[[small; 3], [0.0; 3], [1.0; 3]], &[0, 1, 2], true));
         told("shapes", Shape::rounded(&ball, small));
         let heights = [small; 4];
-        told("shapes", Shape::height_field(&HeightField { columns: 2, heights: &heights, materials: &[], spacing: [x; 2] }, false));
+        told(
+            "shapes",
+            Shape::height_field(&HeightField { columns: 2, heights: &heights, materials: &[], spacing: [x; 2] }, false),
+        );
         told("shapes", Shape::compound(&[ball.at(pose(x))]));
         let (one, other) = (ball.at(pose(x)), ball.at(Transform::default()));
         told("touches", one.touches(&other));
@@ -62,7 +65,13 @@ fn numbers_that_are_none_end_no_call_without_a_name() {
         told("criteria", Criterion::for_frustum(&camera));
         told("polygons", Triangulator::new().unwrap().triangulate(&[[x, 0.0], [0.0, x], [x, x]], &[], Method::Ear));
         told("clusters", ClusteredMesh::new(&[[small; 3], [0.0; 3], [1.0; 3]], &[0, 1, 2], 1000));
-        told("regions", Region::prepare(&[RegionObject::bound(Bound::Box(obb))], &RegionOptions { max_origin: x, ..Default::default() }));
+        told(
+            "regions",
+            Region::prepare(
+                &[RegionObject::bound(Bound::Box(obb))],
+                &RegionOptions { max_origin: x, ..Default::default() },
+            ),
+        );
     }
 }
 
@@ -71,7 +80,11 @@ fn a_world_is_as_before_whatever_was_asked_of_it() {
     let (mut world, objects) = row(3);
     let mesh = world.add_mesh(&MeshData::new(&TETRAHEDRON, &FACES)).unwrap();
     let ball = Shape::sphere(1.0).unwrap();
-    let region = Region::prepare(&[RegionObject::bound(Bound::Sphere { center: [0.0; 3], radius: 1.0 })], &RegionOptions::default()).unwrap();
+    let region = Region::prepare(
+        &[RegionObject::bound(Bound::Sphere { center: [0.0; 3], radius: 1.0 })],
+        &RegionOptions::default(),
+    )
+    .unwrap();
     world.update().unwrap();
     let canary = |world: &World| {
         let hit = world.raycast(&Ray::new([2.0, 0.0, 0.0], [0.0, 0.0, -1.0]), u32::MAX).unwrap().unwrap();
@@ -87,7 +100,12 @@ fn a_world_is_as_before_whatever_was_asked_of_it() {
         told("raycast_any", world.raycast_any(&ray, u32::MAX));
         told("raycasts", world.raycasts(&[ray, ray], u32::MAX));
         told("attach", world.attach(&region, [f64::NAN, x, 0.0]));
-        told("view", ViewResult::new().and_then(|mut result| world.view(&Camera { near: x, ..Default::default() }.into(), &mut result).map(|_| ())));
+        told(
+            "view",
+            ViewResult::new().and_then(|mut result| {
+                world.view(&Camera { near: x, ..Default::default() }.into(), &mut result).map(|_| ())
+            }),
+        );
         told("reserve", world.reserve(usize::MAX));
         if !x.is_finite() {
             assert!(world.add(&Description::shape(&ball).at(pose(x))).is_err());
