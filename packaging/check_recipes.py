@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Checks packaging/vcpkg, packaging/conan and C#'s project against the build, without vcpkg, Conan, .NET or a network.
+"""Checks packaging/vcpkg, packaging/conan and C#'s project against the build, and that all packages tell the same of the project,
+without vcpkg, Conan, .NET or a network.
 
 packaging/check_recipes.py [--configure]
 
@@ -204,6 +205,29 @@ def check_csharp(version):
     expect(all(any(folder.glob(part.get("Include"))) for part in project.iter("Compile")), "Crofton.csproj names files that are not there")
 
 
+# Where each package's metadata tell its version and licence; some take the version from the build.
+METADATA = {"bindings/web/package.json": (r'"version": "(.*)"', r'"license": "(.*)"'), "bindings/rust/Cargo.toml": (r'^version = "(.*)"', r'^license = "(.*)"'),
+            "bindings/csharp/Crofton.csproj": (r"<Version>(.*)</Version>", r"<PackageLicenseExpression>(.*)<"),
+            "bindings/python/setup.py": (None, r'license="(.*)"'), "packaging/make_nupkg.py": (None, None), "bindings/web/mkdocs.yml": (None, None),
+            "packaging/vcpkg/crofton/vcpkg.json": (r'"version": "(.*)"', r'"license": "(.*)"'),
+            "packaging/conan/conanfile.py": (r'^    version = "(.*)"', r'^    license = "(.*)"'), "packaging/debian/control": (None, None),
+            "packaging/debian/changelog": (r"^crofton \((.*)\) ", None), "packaging/debian/copyright": (None, r"^License: (\w+)$")}
+
+
+def check_metadata(version):
+    build = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
+    description = re.search(r'DESCRIPTION "(.*)"', build)[1]
+    for name, patterns in METADATA.items():
+        text = (ROOT / name).read_text(encoding="utf-8")
+        for pattern, wanted in zip(patterns, (version, "MIT")):
+            said = re.search(pattern, text, re.M) if pattern else None
+            expect(not pattern or said and said[1] == wanted, f"{name} says {said and said[1]}, not {wanted}")
+        if name not in ("packaging/debian/changelog", "packaging/debian/copyright"):
+            expect(description.lower() in text.lower(), f"{name} does not describe the project as: {description}")
+    done = subprocess.run([ROOT / "packaging/homepage.py"], capture_output=True, text=True)
+    expect(done.returncode == 0, f"not all packages name the same page:\n{done.stdout}{done.stderr}")
+
+
 def check_exports(exported):
     """What the build and the install rules of the library alone read must be exported."""
     rules = (ROOT / "cmake/CroftonInstall.cmake").read_text().split("if(TARGET crofton_cli)")
@@ -218,9 +242,10 @@ def main():
     check_vcpkg(version, options, "--configure" in sys.argv[1:])
     check_conan(version, options)
     check_csharp(version)
+    check_metadata(version)
     for problem in problems:
         print(f"check_recipes: {problem}", file=sys.stderr)
-    return 1 if problems else print("check_recipes: the vcpkg port, the Conan recipe and C#'s project agree with the build")
+    return 1 if problems else print("check_recipes: the vcpkg port, the Conan recipe and C#'s project agree with the build, and all packages with each other")
 
 
 if __name__ == "__main__":

@@ -21,7 +21,7 @@ NUSPEC = """<?xml version="1.0" encoding="utf-8"?>
     <id>Crofton</id>
     <version>{version}</version>
     <authors>The Crofton developers</authors>
-    <description>Exact culling, collision detection and bounding boxes. Needs glibc {glibc} or newer on Linux.</description>
+    <description>Exact culling and collision detection for games. Needs glibc {glibc} or newer on Linux.</description>
     <license type="file">LICENSE</license>
     <readme>README.md</readme>
     <dependencies><group targetFramework=".NETStandard2.0" /></dependencies>

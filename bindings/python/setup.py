@@ -32,7 +32,8 @@ version = re.search(r"project\(crofton VERSION ([0-9.]+)", (root / "CMakeLists.t
 setup(
     name="crofton",
     version=version,
-    description="Exact culling and collision, and bounds and triangulations chosen by integral geometry",
+    description="Exact culling and collision detection for games",
+    author="The Crofton developers",
     long_description=(here / "README.md").read_text(),
     long_description_content_type="text/markdown",
     license="MIT",

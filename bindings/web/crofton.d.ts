@@ -69,6 +69,16 @@ export interface ObjectDescription { box?: BoxLike; sphere?: Sphere; mesh?: Mesh
 export type Filter = number | { layers?: number; ignored?: ObjectHandle[] };
 export interface RegionObject { box?: BoxLike; sphere?: Sphere; shape?: Shape; mesh?: number; transform?: Vector; user?: number; layers?: number;
     collidesWith?: number; occludes?: boolean; onlyOccludes?: boolean }
+export interface RegionOptions {
+    meshes?: ({ positions: Float32Array; indices: Uint32Array | Uint16Array } & MeshOptions)[]; findOccluders?: boolean;
+    /** 1e9: with meshes or shapes no coordinate of an origin may be larger. */
+    maxOrigin?: number;
+}
+export interface WorldOptions {
+    pairs?: boolean; contacts?: boolean; containment?: boolean; meshDepth?: boolean; contactMargin?: number; maxPairs?: number; updatesToRest?: number;
+    /** Items' worth of background work on the tree in each update; 0: none. As many as are good unless told. */
+    rebuildBudget?: number;
+}
 export interface Triangulation {
     indices: Uint32Array;
     /** Total length of the diagonals. */
@@ -138,7 +148,11 @@ export interface DepthObject {
     /** By how much drawn vertices may be off, besides rounding. */
     positionError?: number;
 }
-export interface Picture { width?: number; height?: number; depth?: Depth; samples?: number }
+export interface Picture {
+    width?: number; height?: number; depth?: Depth; samples?: number;
+    /** 0 for no limit. Otherwise a number of clusters that are tested and of triangles that are drawn, together; what is left is listed whole. */
+    workLimit?: number;
+}
 /** Finds the triangles of pictures and of shadow maps of meshes that no World holds. */
 export interface DepthCuller extends Owned {
     findVisible(objects: DepthObject[], picture?: Picture): DepthCuller;
@@ -299,12 +313,11 @@ export interface Crofton {
     readonly Frustum: new (from?: { camera?: Camera; matrix?: Vector; depth?: Depth; origin?: Vector; layers?: number }) => Frustum;
     readonly Tree: new (boxes: Boxes) => Tree;
     readonly Triangulator: new () => Triangulator;
-    readonly World: new (options?: { pairs?: boolean; contacts?: boolean; containment?: boolean; meshDepth?: boolean; contactMargin?: number;
-        maxPairs?: number; updatesToRest?: number }) => World;
+    readonly World: new (options?: WorldOptions) => World;
     readonly Shape: new (description: ShapeDescription) => Shape;
     readonly ClusteredMesh: { new (positions: Float32Array, indices: ArrayLike<number>, how?: { maxTriangles?: number }): ClusteredMesh; new (bytes: Uint8Array): ClusteredMesh };
     readonly DepthCuller: new () => DepthCuller;
-    readonly Region: new (objects: RegionObject[], how?: { meshes?: ({ positions: Float32Array; indices: Uint32Array | Uint16Array } & MeshOptions)[]; findOccluders?: boolean }) => Region;
+    readonly Region: new (objects: RegionObject[], how?: RegionOptions) => Region;
     readonly ViewResult: new () => ViewResult;
     cullBoxes(boxes: Boxes, frustum: Frustum, visible: ViewResult, how?: CullOptions): ViewResult;
     /** A verdict a box: 0 outside, 1 straddling, 2 inside. */

@@ -61,7 +61,7 @@ def run_doxygen(settings, log):
 def write_reference(out, work):
     version = re.search(r"VERSION (\d+\.\d+\.\d+)", (ROOT / "CMakeLists.txt").read_text()).group(1)
     text = (ROOT / "cmake/Doxyfile.in").read_text()
-    for name, value in {"PROJECT_VERSION": version, "PROJECT_DESCRIPTION": "Exact culling, collision and bounds",
+    for name, value in {"PROJECT_VERSION": version, "PROJECT_DESCRIPTION": "Exact culling and collision detection",
                         "PROJECT_BINARY_DIR": str(out), "PROJECT_SOURCE_DIR": str(ROOT),
                         "CROFTON_REFERENCE_DIRS": " ".join(str(p) for p in sorted(ROOT.glob("engine/**/include")))}.items():
         text = text.replace(f"@{name}@", value)

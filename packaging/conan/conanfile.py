@@ -14,7 +14,8 @@ required_conan_version = ">=2.0"
 class CroftonConan(ConanFile):
     name = "crofton"
     version = "0.3.0"
-    description = "Exact culling, collision detection and bounds for games, chosen by integral geometry"
+    description = "Exact culling and collision detection for games"
+    author = "The Crofton developers"
     license = "MIT"
     topics = ("culling", "collision-detection", "geometry", "games")
     package_type = "library"

@@ -6,7 +6,7 @@ No compiler is needed. Of each struct that Rust and C# declare again, every memb
 and the name of the header's. Of each function, every parameter must have the kind of the header's. Constants must
 have the header's values. JavaScript has offsets within its sources, which bindings/web/native/glue.c states: these are compared
 with a 32-bit layout, and each call must name a function that is exported and give it as many arguments as it takes. Each function of
-the headers is in each binding, or in a list here that says why not.
+the headers is in each binding, or in a list here that says why not; so is each member of the structs that describe what is asked for.
 """
 import pathlib
 import re
@@ -462,6 +462,108 @@ def check_complete(headers):
         problems.append(f"engine/c_api/README.md: its table counts {rows} functions, of {count['engine/c_api']}")
 
 
+# Descriptions: what a caller fills. Each member of C++ is in C and in each binding under its own name, or here says why not.
+
+# Of each struct of C++: C's; Rust's; C#'s, JavaScript's and Python's, where they have one, or the calls whose arguments it becomes.
+DESCRIPTIONS = {
+    "ObjectDescription": ("object_description", "Description", "Add", "ObjectDescription", "add"),
+    "MeshDescription": ("mesh_data", "MeshData", "AddMesh", "MeshOptions addMesh", "add_mesh"),
+    "NodeDescription": ("world_add_node", "add_node", "AddNode", "addNode", "add_node"),
+    "OcclusionOptions": ("occlusion_options", "OcclusionOptions", "OcclusionOptions", "ViewRequest", "OcclusionOptions"),
+    "ViewMatrix": ("view_matrix", "ViewMatrix", "ViewMatrix", "ViewRequest", "ViewMatrix"),
+    "ShadowReceivers": ("shadow_receivers", "ShadowReceivers", "ShadowReceivers", "ViewRequest", "ShadowReceivers"),
+    "ViewRequest": ("view_request", "ViewRequest", "ViewRequest", "ViewRequest", "ViewRequest"),
+    "QueryFilter": ("query_filter", "QueryFilter", "QueryFilter", "Filter", "raycast"),
+    "WorldOptions": ("world_options", "WorldOptions", "WorldOptions", "WorldOptions", "World"),
+    "RegionObject": ("region_object", "RegionObject", "Of", "RegionObject", "prepare"),
+    "RegionOptions": ("region_options", "RegionOptions", "Region", "RegionOptions", "prepare"),
+    "PictureView": ("picture_view", "PictureView", "PictureView", "Picture", "PictureView"),
+    "DepthObject": ("depth_object", "DepthObject", "DepthObject", "DepthObject", "DepthObject"),
+    "DepthReceivers": ("depth_receivers", "find_casters", "DepthReceivers FindCasters", "findCasters", "find_casters"),
+    "DrawLimits": ("draw_limits", "DrawLimits", "DrawLimits", "DrawLimits", "DrawLimits"),
+}
+# Other names of a member: where a language's custom or an argument's place tells more.
+ALSO = {"size": "width height", "to_clip": "matrix doubles", "mode": "conservative", "order": "tree_order",
+        "candidate_mask": "candidates", "bound": "box boxes", "positions": "vertices", "mesh": "meshes instances", "transform": "transforms instances", "user": "users",
+        "objects": "receivers", "meshes": "instances", "occludes": "occluders"}
+# (struct, member, languages without it): why.
+WITHOUT = [
+    ("MeshDescription", "occluders", "c rust csharp web", "a call of its own: find_occluders"),
+    ("MeshDescription", "box", "c rust csharp web python", "an exact box comes from a bake, which is C++"),
+    ("WorldOptions", "tree", "c rust csharp web", "aligned boxes are the better choice but for long oblique things"),
+    ("WorldOptions", "trace", "c rust csharp web python", "a profiler's hooks are C++"),
+    ("RegionOptions", "tree", "c rust csharp web python", "as WorldOptions"),
+    ("RegionOptions", "built", "c rust csharp web python", "a tree of C++; crofton_baked_region_open has it in the file"),
+    ("RegionOptions", "keep", "c rust csharp web python", "the library counts who uses a shape"),
+    ("RegionOptions", "should_stop", "rust csharp web python", "regions of many objects are baked, and opened at once"),
+    ("RegionOptions", "stop_user", "rust csharp web python", "as should_stop"),
+    ("RegionOptions", "max_objects", "csharp web python", "the array's length says it"),
+    ("RegionObject", "shape", "python", "arrays of boxes and of meshes are the fast ways of Python"),
+    ("RegionObject", "only_occludes", "python", "as shape"),
+]
+
+
+def check_descriptions():
+    cpp = "".join(all_text(f"engine/{room}", "*/include/crofton/*/*.hpp") for room in ("world", "view"))
+    c = "".join(all_text(folder, "*.h") for folder in HEADERS)
+    rust, sharp = all_text("bindings/rust/src", "?[!y]*.rs"), all_text("bindings/csharp/src", "*.cs")
+    web, python = text_of("bindings/web/crofton.d.ts"), re.sub(r"#.*", "", (ROOT / "bindings/python/crofton/__init__.pyi").read_text(encoding="utf-8"))
+    used = set()
+
+    def braced(text, beginning):
+        """What the braces or brackets after each match hold."""
+        parts = []
+        for found in re.finditer(beginning, text):
+            at, depth = found.end(), 1
+            while depth:
+                depth += (text[at] in "{(") - (text[at] in "})")
+                at += 1
+            parts.append(text[found.end():at])
+        return " ".join(parts)
+
+    def said_by(language, names):
+        """The words that the declarations of one binding use, without case and underscores."""
+        text = ""
+        for name in names.split():
+            if language == "c":
+                text += braced(c, rf"typedef struct crofton_{name} \{{") + braced(c, rf"crofton_{name}\(")
+            elif language == "rust":
+                text += braced(rust, rf"pub struct {name}(?:<'a>)? \{{") + braced(rust, rf"pub fn {name}(?:<[^(]*>)?\(")
+            elif language == "csharp":
+                text += braced(sharp, rf"public (?:sealed )?(?:partial )?(?:class|struct) {name} [^{{]*\{{") if not re.search(rf"public {name}\(", sharp) else ""
+                text += braced(sharp, rf"public (?:static )?(?:\w+(?:\[\])? )?{name}\(")
+            elif language == "web":
+                text += braced(web, rf"export interface {name} \{{") + braced(web, rf"(?<!\w){name}\(") + braced(web, rf"export type {name} = number \| \{{")
+            else:
+                text += braced(python, rf"class {name}:\n(?:    [^\n]*\n)*?    def __init__\(") + braced(python, rf"def {name}\(")
+        return {plain(word) for word in re.findall(r"\w+", text)}
+
+    for struct, names in DESCRIPTIONS.items():
+        body = re.search(rf"struct {struct} \{{(.*?)\n\}};", cpp, re.S)
+        if not body:
+            problems.append(f"check_bindings.py: C++ has no struct {struct}")
+            continue
+        members = [re.search(r"(\w+)\s*(?:[={].*)?$", " ".join(line.split()))[1] for line in body[1].split(";")[:-1]
+                   if not re.match(r"\s*(static|using|\[\[)", line)]
+        for language, declared in zip(("c", "rust", "csharp", "web", "python"), names):
+            said = said_by(language, declared)
+            if not said:
+                problems.append(f"bindings: {language} has no {declared}, in which {struct} of C++ is told")
+            for member in members:
+                reason = next((row for row in WITHOUT if row[:2] == (struct, member) and language in row[2].split()), None)
+                there = any(plain(word) in said for word in (member, *ALSO.get(member, "").split()))
+                if reason:
+                    used.add((*reason[:2], language))
+                if not there and not reason:
+                    problems.append(f"{language}: {declared} has no {member} of C++'s {struct}: add it, or say in check_bindings.py why not")
+                elif there and reason:
+                    problems.append(f"check_bindings.py: {language} has {struct}.{member} now: take it out of WITHOUT")
+    for struct, member, languages, _ in WITHOUT:
+        for language in languages.split():
+            if (struct, member, language) not in used:
+                problems.append(f"check_bindings.py: WITHOUT names {struct}.{member}, which C++ does not have")
+
+
 headers = Headers()
 rust, sharp = Rust(headers), Sharp(headers)
 rust.check()
@@ -469,5 +571,6 @@ sharp.check()
 check_glue(headers)
 check_web_calls(headers)
 check_complete(headers)
+check_descriptions()
 if problems:
     sys.exit("\n".join(dict.fromkeys(problems)))

@@ -24,6 +24,8 @@ namespace Crofton {
         /// <summary>Returns a mesh's indices in the order of its clusters.</summary>
         public uint[] Permute(uint[] indices) {
             Library.NotNull(indices, "indices");
+            Library.NotNull(All, "All");
+            Library.NotNull(TriangleOrder, "TriangleOrder");
             using (var memory = new Copies()) {
                 var data = new Native.ClustersData {
                     Clusters = memory.Pinned(All), ClusterCount = (UIntPtr)All.Length, TriangleOrder = memory.Pinned(TriangleOrder),

@@ -7,7 +7,7 @@ namespace Crofton {
     public struct RegionObject {
         internal Bound Bound;
         internal Shape Shape;
-        internal bool OnlyOccludes;
+        internal bool OnlyOccludes, Occludes;
         internal int Mesh;
         internal Transform Transform;
         internal ulong User;
@@ -22,10 +22,12 @@ namespace Crofton {
             Library.NotNull(shape, "shape");
             return new RegionObject { Shape = shape, Mesh = -1, Transform = transform, User = user, Layers = layers, CollidesWith = collidesWith };
         }
-        /// <summary>An object with the mesh at that place among the region's. onlyOccludes: it only hides others.</summary>
-        public static RegionObject Of(int mesh, Transform transform, ulong user = 0, uint layers = World.AllLayers, uint collidesWith = World.AllLayers, bool onlyOccludes = false) {
+        /// <summary>An object with the mesh at that place among the region's. onlyOccludes: it only hides others; without occludes
+        /// it hides none.</summary>
+        public static RegionObject Of(int mesh, Transform transform, ulong user = 0, uint layers = World.AllLayers, uint collidesWith = World.AllLayers, bool onlyOccludes = false,
+                                      bool occludes = true) {
             if (mesh < 0) throw new ArgumentOutOfRangeException("mesh");
-            return new RegionObject { Mesh = mesh, Transform = transform, User = user, Layers = layers, CollidesWith = collidesWith, OnlyOccludes = onlyOccludes };
+            return new RegionObject { Mesh = mesh, Transform = transform, User = user, Layers = layers, CollidesWith = collidesWith, OnlyOccludes = onlyOccludes, Occludes = occludes };
         }
     }
 
@@ -46,8 +48,8 @@ namespace Crofton {
         internal readonly RegionHandle Handle;
 
         /// <summary>Prepares a region. If an object or a mesh is refused, the exception's Item is its place. With findOccluders, searches
-        /// the meshes for occluders, as World.FindOccluders does.</summary>
-        public Region(RegionObject[] objects, RegionMesh[] meshes = null, bool findOccluders = false) {
+        /// the meshes for occluders, as World.FindOccluders does. With meshes or shapes no coordinate of an origin may be larger than maxOrigin.</summary>
+        public Region(RegionObject[] objects, RegionMesh[] meshes = null, bool findOccluders = false, double maxOrigin = 1e9) {
             Library.NotNull(objects, "objects");
             Library.Load();
             using (var memory = new Copies()) {
@@ -67,6 +69,7 @@ namespace Crofton {
                     if (given.Mesh >= 0) data[i].Mesh = (uint)given.Mesh;
                     else data[i].Shape = memory.Held(given.Shape.Handle);
                     data[i].OnlyOccludes = given.OnlyOccludes ? 1u : 0u;
+                    if (given.Mesh >= 0) data[i].Occludes = given.Occludes ? 1u : 0u;
                     transforms[i] = given.Transform;
                     data[i].Transform = new IntPtr(first.ToInt64() + (long)i * Marshal.SizeOf(typeof(Transform)));
                 }
@@ -81,6 +84,7 @@ namespace Crofton {
                 options.Meshes = memory.Pinned(described);
                 options.MeshCount = (UIntPtr)described.Length;
                 options.FindOccluders = findOccluders ? 1u : 0u;
+                options.MaxOrigin = maxOrigin;
                 Library.Check(Native.crofton_region_prepare(data, (UIntPtr)data.Length, ref options, IntPtr.Zero, out Handle));
             }
         }

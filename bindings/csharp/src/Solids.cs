@@ -293,10 +293,11 @@ namespace Crofton {
     public sealed partial class World {
         /// <summary>Adds an object with only a shape, under a node or in the world. Half-spaces, and compounds that contain some, are infinite
         /// ground. The transform scales the shape.</summary>
-        public ObjectHandle Add(Shape shape, Transform transform, ulong user = 0, NodeHandle? node = null, uint layers = AllLayers, uint collidesWith = AllLayers) {
+        public ObjectHandle Add(Shape shape, Transform transform, ulong user = 0, NodeHandle? node = null, uint layers = AllLayers, uint collidesWith = AllLayers,
+                                bool hidden = false) {
             Library.NotNull(shape, "shape");
             using (var memory = new Copies()) {
-                var data = Describe(user, layers, collidesWith);
+                var data = Describe(user, layers, collidesWith, hidden);
                 data.Shape = memory.Held(shape.Handle);
                 data.HasNode = Flag(node.HasValue);
                 data.Node = node.GetValueOrDefault();

@@ -153,20 +153,21 @@ namespace Crofton {
         }
 
         /// <summary>Adds an object with a mesh, under a node or in the world; `user` is returned with every answer. onlyOccludes: no answer contains
-        /// the object, but its occluders hide others.</summary>
+        /// the object, but its occluders hide others; without occludes it hides none. hidden: no answer contains it until SetHidden shows it.</summary>
         public ObjectHandle Add(MeshHandle mesh, Transform transform, ulong user = 0, NodeHandle? node = null,
-                                uint layers = AllLayers, uint collidesWith = AllLayers, bool onlyOccludes = false) {
-            var data = Describe(user, layers, collidesWith);
+                                uint layers = AllLayers, uint collidesWith = AllLayers, bool onlyOccludes = false, bool occludes = true, bool hidden = false) {
+            var data = Describe(user, layers, collidesWith, hidden);
             data.HasMesh = 1;
             data.OnlyOccludes = Flag(onlyOccludes);
+            data.Occludes = Flag(occludes);
             data.Mesh = mesh;
             data.HasNode = Flag(node.HasValue);
             data.Node = node.GetValueOrDefault();
             return Add(data, transform, (ref Native.ObjectData d, IntPtr p) => d.Transform = p);
         }
         /// <summary>Adds an object with only a bound.</summary>
-        public ObjectHandle Add(Bound bound, ulong user = 0, uint layers = AllLayers, uint collidesWith = AllLayers) {
-            return Add(Describe(user, layers, collidesWith), bound.Data, (ref Native.ObjectData d, IntPtr p) => d.Bound = p);
+        public ObjectHandle Add(Bound bound, ulong user = 0, uint layers = AllLayers, uint collidesWith = AllLayers, bool hidden = false) {
+            return Add(Describe(user, layers, collidesWith, hidden), bound.Data, (ref Native.ObjectData d, IntPtr p) => d.Bound = p);
         }
         /// <summary>Adds many objects with only bounds; objects[i] becomes the handle of bounds[i]. Adds all valid ones: the exception names the
         /// first of the others, whose handles are stale from the start. users: a number for each, or null.</summary>
@@ -365,11 +366,12 @@ namespace Crofton {
 
         static uint Flag(bool value) { return value ? 1u : 0u; }
         static NodeHandle[] ToArray(NodeHandle? node) { return node.HasValue ? new[] { node.Value } : null; }
-        static Native.ObjectData Describe(ulong user, uint layers, uint collidesWith) {
+        static Native.ObjectData Describe(ulong user, uint layers, uint collidesWith, bool hidden = false) {
             Native.ObjectData data = Native.crofton_default_object_description();
             data.User = user;
             data.Layers = layers;
             data.CollidesWith = collidesWith;
+            data.Hidden = Flag(hidden);
             return data;
         }
 

@@ -22,6 +22,9 @@ static class ClusterTests {
             Expect.Fails(Status.OutOfRange, () => mesh.BoxOf(1));
             Expect.Fails(Status.OutOfRange, () => mesh.BoxOf(-1));
 
+            Expect.Throws<ArgumentNullException>(() => new Clusters { All = cut.All }.Permute(Faces));
+            Expect.Throws<ArgumentNullException>(() => new Clusters { TriangleOrder = cut.TriangleOrder }.Permute(Faces));
+
             byte[] bytes = mesh.ToBytes();
             using (var stored = new ClusteredMesh(bytes)) {
                 Expect.Sequence(cut.TriangleOrder, stored.Clusters().TriangleOrder);

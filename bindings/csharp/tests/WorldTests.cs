@@ -298,9 +298,14 @@ static class WorldTests {
         using (var world = Row(2, out o))
         using (var visible = new ViewResult()) {
             world.SetHidden(o[0], true);
+            var late = world.Add(Bound.Sphere(new Vector3(0, 0, -5), 1), 7, hidden: true);
             world.Update();
             world.View(new Camera(), visible);
             Expect.Sequence(new ulong[] { 1 }, Users(visible));
+            world.SetHidden(late, false);
+            world.Update();
+            world.View(new Camera(), visible);
+            Expect.Sequence(new ulong[] { 1, 7 }, Users(visible));
         }
     }
     [Test] static void WhatAWallHidesIsNotSeen() {

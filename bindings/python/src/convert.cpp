@@ -220,8 +220,21 @@ Boxes::Boxes(const py::handle& given, const char* name) {
         span_ = {given.cast<const Obb*>(), 1};
         return;
     }
+    if ((py::isinstance<py::list>(given) || py::isinstance<py::tuple>(given)) && py::len(given) > 0 &&
+        py::isinstance<Obb>(given[py::int_(0)])) {
+        std::vector<Obb> boxes;
+        for (const py::handle one : given) {
+            if (!py::isinstance<Obb>(one)) raise_type(std::string(name) + ": not all are a Box");
+            boxes.push_back(one.cast<const Obb&>());
+        }
+        const py::array copy = boxes_of(boxes);
+        span_ = {static_cast<const Obb*>(copy.data()), boxes.size()};
+        owner_ = copy;
+        return;
+    }
     const py::array array =
-        records(given, box_dtype(), name, "a Box or an array of crofton.box_dtype, as crofton.boxes() makes it,");
+        records(given, box_dtype(), name,
+                "a Box, a list of them or an array of crofton.box_dtype, as crofton.boxes() makes it,");
     span_ = {static_cast<const Obb*>(array.data()), static_cast<std::size_t>(array.size())};
     owner_ = array;
 }

@@ -103,7 +103,7 @@ template <class T, class Range>
 [[nodiscard]] const py::dtype& box_dtype();
 class Boxes {
   public:
-    // A Box, or an array of box_dtype with any number of dimensions. Raises TypeError for others.
+    // A Box, a list of them, or an array of box_dtype with any number of dimensions. Raises TypeError for others.
     Boxes(const py::handle& given, const char* name);
     [[nodiscard]] std::span<const Obb> span() const { return span_; }
 

@@ -49,7 +49,8 @@ void bind_world(py::module_& module) {
         "and what touches what. Changes take effect at the next update(). May be used from several threads.");
     type.def(
         py::init([](bool pairs, bool contacts, bool containment, double contact_margin, bool mesh_depth,
-                    std::size_t max_pairs, std::uint32_t updates_to_rest, const std::string& tree) {
+                    std::size_t max_pairs, std::uint32_t updates_to_rest, const std::string& tree,
+                    std::optional<std::size_t> rebuild_budget) {
             if (!(contact_margin >= 0.0 && std::isfinite(contact_margin)))
                 raise({ErrorCode::out_of_range, kNoItem, "contact_margin: a finite number from 0 on is expected"});
             return std::make_unique<PyWorld>(WorldOptions{.pairs = pairs,
@@ -58,14 +59,16 @@ void bind_world(py::module_& module) {
                                                           .contact_margin = contact_margin,
                                                           .mesh_depth = mesh_depth,
                                                           .max_pairs = max_pairs,
+                                                          .rebuild_budget = rebuild_budget.value_or(kAutomatic),
                                                           .updates_to_rest = updates_to_rest,
                                                           .tree = orientation_of(tree)});
         }),
         py::kw_only(), py::arg("pairs") = true, py::arg("contacts") = true, py::arg("containment") = true,
         py::arg("contact_margin") = 0.0, py::arg("mesh_depth") = false, py::arg("max_pairs") = WorldOptions{}.max_pairs,
-        py::arg("updates_to_rest") = 16, py::arg("tree") = "aligned",
+        py::arg("updates_to_rest") = 16, py::arg("tree") = "aligned", py::arg("rebuild_budget") = py::none(),
         "`contact_margin`: gaps up to this between shapes are contacts. `mesh_depth`: contacts between meshes have "
-        "a depth, which takes longer than finding them.");
+        "a depth, which takes longer than finding them. `rebuild_budget`: items' worth of background work on the tree "
+        "in each update, None for as many as are good.");
     type.def("__repr__", [](const PyWorld& world) {
         return format("World(%zu objects)", world.ask([](const World& w) { return w.object_count(); }));
     });

@@ -120,7 +120,7 @@ py::array add_all(PyWorld& to, std::size_t count, const py::object& users, F&& d
 ObjectHandle add(PyWorld& to, const py::object& mesh, const py::object& node, const py::object& transform,
                  const py::object& box, const py::object& sphere, const py::object& aligned, const SharedShape& shape,
                  std::uint64_t user, std::uint32_t layers, std::uint32_t collides_with, bool occludes,
-                 bool only_occludes) {
+                 bool only_occludes, bool hidden) {
     ObjectDescription description;
     if (shape) description.shape = &*shape->shape;
     description.mesh = handle_or_null<MeshHandle>(mesh, "mesh");
@@ -132,6 +132,7 @@ ObjectHandle add(PyWorld& to, const py::object& mesh, const py::object& node, co
     description.collides_with = collides_with;
     description.occludes = occludes;
     description.only_occludes = only_occludes;
+    description.hidden = hidden;
     return value_of(to.change([&](World& world) {
         auto added = world.add(description);
         if (added) to.keep(*added, shape);
@@ -292,10 +293,11 @@ void bind_world_changes(py::module_& module, py::class_<PyWorld>& type) {
              py::arg("transform") = py::none(), py::arg("box") = py::none(), py::arg("sphere") = py::none(),
              py::arg("aligned") = py::none(), py::arg("shape") = py::none(), py::arg("user") = 0,
              py::arg("layers") = ~0u, py::arg("collides_with") = ~0u, py::arg("occludes") = true,
-             py::arg("only_occludes") = false,
+             py::arg("only_occludes") = false, py::arg("hidden") = false,
              "Adds an object: a mesh, placed by `transform` under `node` or in the world; or a bound, which is a Box, "
              "a sphere (center, radius) or an aligned box (low, high); or a Shape, alone or with one of them. "
-             "`only_occludes`: no answer contains it, but its mesh's occluders hide others.")
+             "`only_occludes`: no answer contains it, but its mesh's occluders hide others. `hidden`: no answer "
+             "contains it until set_hidden shows it.")
         .def(
             "set_bound",
             [](PyWorld& world, ObjectHandle object, const py::object& box, const py::object& sphere,

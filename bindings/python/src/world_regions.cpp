@@ -193,7 +193,8 @@ void bind_world_regions(py::module_& module, py::class_<PyWorld>& type) {
                 const glm::dvec3 at = vector_of(origin, "origin");
                 return value_of(world.change([&](World& w) { return w.attach(region, at); }));
             },
-            py::arg("region"), py::arg("origin"), "Its objects are in all answers from the next update() on.")
+            py::arg("region"), py::arg("origin") = py::make_tuple(0, 0, 0),
+            "Its objects are in all answers from the next update() on.")
         .def(
             "detach",
             [](PyWorld& world, RegionHandle region) {

@@ -209,8 +209,12 @@ def test_hidden_and_layered_objects(world):
     assert world.view(crofton.Camera(), layers=2).ids.tolist() == [second.index]
     world.set_hidden(second, True)
     world.set_layers([first], 4)
+    late = world.add(box=box, layers=2, hidden=True)
     world.update()
     assert world.view(crofton.Camera()).ids.tolist() == [first.index]
+    world.set_hidden(late, False)
+    world.update()
+    assert world.view(crofton.Camera()).ids.tolist() == [first.index, late.index]
     assert len(world.view(crofton.Camera(), layers=1)) == 0
 
 

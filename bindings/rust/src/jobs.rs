@@ -16,15 +16,15 @@ pub unsafe trait Executor {
     fn parallel_for(&self, count: usize, grain: usize, task: &(dyn Fn(usize, usize, u32) + Sync));
 }
 
-/// A number of threads, started in each call. A game should use its own job system.
+/// A number of threads, started in each call; fewer if the system starts no more. A game should use its own job system.
 pub struct Threads(
-    /// 0 counts as 1.
+    /// 0 counts as 1, more than 1024 as 1024.
     pub u32,
 );
 
 unsafe impl Executor for Threads {
     fn concurrency(&self) -> u32 {
-        self.0.max(1)
+        self.0.clamp(1, 1024)
     }
 
     fn parallel_for(&self, count: usize, grain: usize, task: &(dyn Fn(usize, usize, u32) + Sync)) {
@@ -41,7 +41,9 @@ unsafe impl Executor for Threads {
         std::thread::scope(|scope| {
             for worker in 1..self.concurrency() {
                 let work = &work;
-                scope.spawn(move || work(worker));
+                if std::thread::Builder::new().spawn_scoped(scope, move || work(worker)).is_err() {
+                    break;
+                }
             }
             work(0);
         });

@@ -14,7 +14,7 @@ export class DepthCuller extends Owned {
         super(memory, 'DepthCuller', create(memory, 'depth_culler'), '_crofton_depth_culler_destroy');
     }
     /**
-     * Lists the triangles that a picture `{ width, height, depth, samples }` needs. `objects`: `{ mesh, toClip, oneSided, hides, positionError }`,
+     * Lists the triangles that a picture `{ width, height, depth, samples, workLimit }` needs. `objects`: `{ mesh, toClip, oneSided, hides, positionError }`,
      * where `mesh` is a ClusteredMesh and `toClip` takes its positions to clip space, sixteen numbers by columns.
      */
     findVisible(objects, picture) {

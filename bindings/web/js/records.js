@@ -28,9 +28,9 @@ export function withFilter(memory, filter, use) {
 }
 
 /** A user number's low and high half. */
-export function halvesOf(user) {
-    if (!(Number.isInteger(user) && user >= 0 && user < 2 ** 53)) throw failure(1, 'user is a whole number below 2^53');
-    return [user % 2 ** 32, Math.floor(user / 2 ** 32)];
+export function halvesOf(number, name = 'user') {
+    if (!(Number.isInteger(number) && number >= 0 && number < 2 ** 53)) throw failure(1, `${name} is a whole number below 2^53`);
+    return [number % 2 ** 32, Math.floor(number / 2 ** 32)];
 }
 export const userAt = ({ words }, at) => words[at >> 2] + 2 ** 32 * words[(at >> 2) + 1];
 

@@ -5,10 +5,11 @@ import { ALL, clustersAt, halvesOf, layersOf, meshArrays, vectorAt, writeBound, 
 
 /**
  * Many objects that do not move, relative to an origin: `World.attach`, which takes microseconds. An object is that of `World.add`, but its
- * `mesh` is a place in `meshes`: `[{ positions, indices, clusters, oneSided, precut }]`.
+ * `mesh` is a place in `meshes`: `[{ positions, indices, clusters, oneSided, precut }]`. With meshes or shapes no
+ * coordinate of an origin may be larger than `maxOrigin`.
  */
 export class Region extends Owned {
-    constructor(memory, objects, { meshes = [], findOccluders = false } = {}) {
+    constructor(memory, objects, { meshes = [], findOccluders = false, maxOrigin = 1e9 } = {}) {
         checkRecords(objects, 'objects');
         const arrays = checkRecords(meshes, 'meshes').flatMap(({ positions, indices }) => meshArrays(positions, indices));
         const records = new Float64Array(25 * objects.length), transforms = new Float64Array(12 * objects.length);
@@ -27,6 +28,7 @@ export class Region extends Owned {
                 meshes.forEach(({ positions, indices, ...how }, i) => writeMesh(memory, described + 48 * i, places[2 * i], places[2 * i + 1], positions, indices, how));
                 memory.fill('default_region_options', options);
                 memory.words.set([described, meshes.length, findOccluders ? 1 : 0], options + 24 >> 2);
+                memory.doubles[options + 40 >> 3] = maxOrigin;
                 const slot = memory.allocate(8, 'region');
                 try {
                     memory.call('region_prepare', first, objects.length, options, 0, slot);

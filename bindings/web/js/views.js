@@ -3,7 +3,7 @@
 import { failure } from './error.js';
 import { Owned, checkArray, checkRecords, create, handleOf, numbersOf } from './memory.js';
 import { DEPTH, writeCamera } from './geometry.js';
-import { ALL, layersOf, trianglesIn, vectorAt } from './records.js';
+import { ALL, halvesOf, layersOf, trianglesIn, vectorAt } from './records.js';
 
 /**
  * The answer of a view of a world, a tree or a list of boxes. Its arrays are valid until its next view or growth of memory. After a view of
@@ -130,9 +130,10 @@ function depthOf(name) {
     return DEPTH[name];
 }
 /** Writes 32 bytes. */
-export function writePicture(memory, at, { width = 1280, height = 720, depth = 'reversed', samples = 1 } = {}) {
+export function writePicture(memory, at, { width = 1280, height = 720, depth = 'reversed', samples = 1, workLimit = 0 } = {}) {
     memory.fill('default_picture_view', at);
     memory.words.set([width, height, depthOf(depth), samples], (at >> 2) + 1);
+    memory.words.set(halvesOf(workLimit, 'workLimit'), (at >> 2) + 6);
     return at;
 }
 

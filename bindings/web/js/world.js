@@ -15,14 +15,15 @@ const PHASES = ['began', 'stayed', 'ended'], INSIDE = ['nothing', 'first', 'seco
 /**
  * Holds objects and answers queries about them. Changes take effect in `update`. Objects, meshes, nodes and attached regions are
  * `{ kind, index, generation }`. `pairs`, `contacts`: whether updates find them; with more than `maxPairs` an update fails. An object that did not
- * move for `updatesToRest` updates rests.
+ * move for `updatesToRest` updates rests. `rebuildBudget`: items' worth of background work on the tree in each update, as many as are good unless told.
  */
 export class World extends Owned {
-    constructor(memory, { pairs = true, contacts = true, containment = true, meshDepth = false, contactMargin = 0, maxPairs = 2 ** 24, updatesToRest = 16 } = {}) {
+    constructor(memory, { pairs = true, contacts = true, containment = true, meshDepth = false, contactMargin = 0, maxPairs = 2 ** 24, updatesToRest = 16, rebuildBudget } = {}) {
         const at = memory.scratch(56), { words } = memory;
         memory.fill('default_world_options', at);
         words.set([pairs, contacts, containment, meshDepth].map(Number), (at >> 2) + 1);
-        words.set(halvesOf(maxPairs), (at >> 2) + 6);
+        words.set(halvesOf(maxPairs, 'maxPairs'), (at >> 2) + 6);
+        if (rebuildBudget !== undefined) words.set(halvesOf(rebuildBudget, 'rebuildBudget'), (at >> 2) + 8);
         words[(at >> 2) + 10] = updatesToRest;
         memory.doubles[(at >> 3) + 6] = contactMargin;
         super(memory, 'World', create(memory, 'world', at), '_crofton_world_destroy');
@@ -305,7 +306,7 @@ export class World extends Owned {
     /**
      * Lists what a view sees. Set `camera`, `matrix` (with `depth` and `origin`, as in Frustum) or `volume`, a Frustum; with
      * occlusion also a camera or matrix beside a volume. `layers`; `occlusion`: leaves out what others hide, `{ listOccluded, width, height,
-     * maxOccluders, leastCover }`; `picture`: `{ width, height, depth, samples }`, lists the triangles that it needs, instead of
+     * maxOccluders, leastCover }`; `picture`: `{ width, height, depth, samples, workLimit }`, lists the triangles that it needs, instead of
      * occlusion; `receivers`: `{ seen, radius }`, with a picture that is a light's shadow map lists only the triangles whose shadows the
      * camera could see, whose view with a picture `seen` answered; `limits`: leaves out what is small or far; `candidates`: bits by object index, BigUint64Array or
      * Uint32Array; `treeOrder`, `conservative`. An array of up to 32 requests is answered at once, each object listed once.

@@ -1,13 +1,22 @@
 // SPDX-License-Identifier: MIT
 // A headless Chromium, spoken to over pipes: pages, what they say, and their pictures.
 import { spawn, spawnSync } from 'node:child_process';
-import { mkdtempSync, rmSync } from 'node:fs';
+import { mkdtempSync, readFileSync, readdirSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 
 /** Why there is no browser here, or null. */
 export const missing = spawnSync('chromium', ['--version']).status === 0 ? null
     : 'chromium is not here; third_party/install.sh --web installs it';
+
+/** What `read` returns; nothing where the process has ended meanwhile. */
+function quietly(read) {
+    try {
+        return read();
+    } catch {
+        return undefined;
+    }
+}
 
 export class Browser {
     #process; #folder; #next = 1; #waiting = new Map(); #rest = '';
@@ -61,6 +70,19 @@ export class Browser {
             await new Promise((next) => setTimeout(next, 50));
         }
         return page;
+    }
+    /** How long the browser's threads have run, and how long they were ready to run and others did, in ms. */
+    processorTime() {
+        const parents = new Map(), times = [0, 0];
+        for (const id of readdirSync('/proc').filter((name) => Number(name) > 0))
+            parents.set(id, quietly(() => readFileSync(`/proc/${id}/stat`, 'utf8').replace(/.*\) \S /, '').split(' ')[0]));
+        const isOurs = (id) => id !== undefined && (id === String(this.#process.pid) || isOurs(parents.get(id)));
+        for (const id of [...parents.keys()].filter(isOurs))
+            for (const thread of quietly(() => readdirSync(`/proc/${id}/task`)) ?? []) {
+                const counts = quietly(() => readFileSync(`/proc/${id}/task/${thread}/schedstat`, 'utf8')) ?? '0 0';
+                counts.split(' ').slice(0, 2).forEach((nanoseconds, k) => { times[k] += nanoseconds / 1e6; });
+            }
+        return times;
     }
     async close() {
         const ended = new Promise((done) => this.#process.on('exit', done));

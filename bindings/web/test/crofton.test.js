@@ -282,6 +282,11 @@ for (const build of BUILDS) {
         assert.equal(seen(), 0);
         world.setHidden(box, false);
         assert.equal(seen(), 1);
+        const late = world.add({ sphere: { center: [0, 0, -5], radius: 1 }, hidden: true });
+        assert.equal(seen(), 1);
+        world.setHidden(late, false);
+        assert.equal(seen(), 2);
+        world.remove(late);
         world.remove(box);
         assert.deepEqual([seen(), world.count, world.contains(box)], [0, 0, false]);
         assert.throws(() => world.remove(box), refused('stale handle'));

@@ -47,6 +47,7 @@ crofton_object_description crofton_default_object_description(void) {
     result.collides_with = description.collides_with;
     result.occludes = description.occludes;
     result.only_occludes = description.only_occludes;
+    result.hidden = description.hidden;
     return result;
 }
 

@@ -170,6 +170,7 @@ crofton_status to_object_description(const crofton_object_description* first, st
     description.collides_with = given.collides_with;
     description.occludes = given.occludes != 0;
     description.only_occludes = given.only_occludes != 0;
+    description.hidden = given.hidden != 0;
     return CROFTON_OK;
 }
 
@@ -199,16 +200,13 @@ crofton_status add_one(crofton_world& world, const crofton_object_description* f
     crofton_object_description given;
     ObjectDescription made;
     CROFTON_CHECK(to_object_description(first, i, function, given, made));
-    if (!given.shape) {
-        CROFTON_CHECK(hand_out(world.world.add(made), &object, function));
-    } else {
-        const SharedUse use_shape(given.shape, function);
-        if (use_shape.failed()) return use_shape.status();
-        made.shape = &*given.shape->data->shape;
-        CROFTON_CHECK(hand_out(world.world.add(made), &object, function));
-        world.keep(object.index, given.shape->data);
-    }
-    return given.hidden ? status_of(world.world.set_hidden(to_handle(object), true), function) : CROFTON_OK;
+    if (!given.shape) return hand_out(world.world.add(made), &object, function);
+    const SharedUse use_shape(given.shape, function);
+    if (use_shape.failed()) return use_shape.status();
+    made.shape = &*given.shape->data->shape;
+    CROFTON_CHECK(hand_out(world.world.add(made), &object, function));
+    world.keep(object.index, given.shape->data);
+    return CROFTON_OK;
 }
 
 // At most one of the members that may be refused.

@@ -248,8 +248,8 @@ void add_bake_command(CommandLine& line) {
         "  crofton bake level.wad --map MAP01 -o map01.crofton\n"
         "  crofton bake map01.crofton\n"
         "  crofton bake town --instances 100000 --regions 8x8 --folder regions --threads 0 && crofton bake regions\n"
-        "  crofton bake town --regions 8x8 --folder regions --shard 0/2 --state part0     the other: 1/2, part1\n"
-        "  crofton merge part0 part1 --out regions/index.crofton\n"
+        "  crofton bake town --regions 8x8 --folder town_regions --shard 0/2 --state part0   # the other: 1/2, part1\n"
+        "  crofton merge part0 part1 --out town_regions/index.crofton\n"
         "  crofton frames map01.crofton --camera street --occlude\n"
         "  crofton frames level.wad --map MAP01 --occlude --baked map01.crofton\n"
         "  crofton bake town --instances 1000000 -o town.crofton && crofton bake town.crofton --threads 0");

@@ -600,17 +600,17 @@ constexpr const char* kFramesExamples =
     "130 interrupted; results so far are written.\n"
     "\n"
     "Examples:\n"
-    "  crofton frames                                     the built-in town, 120 frames around it\n"
-    "  crofton frames town --camera street --verify       every frame checked by brute force\n"
-    "  crofton frames town --camera street --occlude      without and with occlusion culling, side by side\n"
-    "  crofton frames town --camera street --occlude --shadow 2048   and what a shadow map needs\n"
-    "  crofton frames town --instances 100000 --no-draw   a larger town, culled and collided only\n"
-    "  crofton frames parts/ --camera street              a city composed from a folder of parts\n"
-    "  crofton frames level.wad --map MAP01 --png out     a DOOM level, a picture per frame in out/\n"
-    "  crofton frames city.glb --bounds aabb --csv -      another bound, one line per frame to stdout\n"
-    "  crofton frames regions/ --no-draw                  a flight over regions by 'crofton bake --regions'\n"
-    "  crofton frames town --report town.html             one page with pictures and charts\n"
-    "  crofton frames town --json run.json && crofton frames town --camera run.json   the same path again\n";
+    "  crofton frames                                     # the built-in town, 120 frames around it\n"
+    "  crofton frames town --camera street --verify       # every frame checked by brute force\n"
+    "  crofton frames town --camera street --occlude      # without and with occlusion culling, side by side\n"
+    "  crofton frames town --camera street --occlude --shadow 2048   # and what a shadow map needs\n"
+    "  crofton frames town --instances 100000 --no-draw   # a larger town, culled and collided only\n"
+    "  crofton frames parts/ --camera street              # a city composed from a folder of parts\n"
+    "  crofton frames level.wad --map MAP01 --png out     # a DOOM level, a picture per frame in out/\n"
+    "  crofton frames city.glb --bounds aabb --csv -      # another bound, one line per frame to stdout\n"
+    "  crofton frames regions/ --no-draw                  # a flight over regions by 'crofton bake --regions'\n"
+    "  crofton frames town --report town.html             # one page with pictures and charts\n"
+    "  crofton frames town --json run.json && crofton frames town --camera run.json   # the same path again\n";
 
 }  // namespace
 

@@ -537,10 +537,10 @@ void add_pvs_command(CommandLine& line) {
         "Examples:\n"
         "  crofton pvs town --cells 64x2x64 --out town_pvs.crofton --svg town.svg\n"
         "  crofton pvs level.wad --map MAP01 --cells rooms --near 0.2 --out map01.crofton\n"
-        "  crofton pvs town --shard 0/2 --state part0       half of the lines; the others: 1/2, part1\n"
-        "  crofton merge part0 part1 --out town.state       then both together\n"
+        "  crofton pvs town --shard 0/2 --state part0       # half of the lines; the others: 1/2, part1\n"
+        "  crofton merge part0 part1 --out town.state       # then both together\n"
         "  crofton pvs town --state town.state --out town_pvs.crofton --views 1000\n"
-        "  crofton pvs regions/ --cells 8x1x8 --reach 50    a file of sets for each region of a folder");
+        "  crofton pvs regions/ --cells 8x1x8 --reach 50    # a file of sets for each region of a folder");
     command
         .option(
             "scene", options->scene,

@@ -433,9 +433,9 @@ void add_radiosity_command(CommandLine& line) {
         "Examples:\n"
         "  crofton study radiosity room --edge 0.2 --error 0.02 --out room.glb --png room.png\n"
         "  crofton study radiosity town --lines 20000000 --checkpoint town.state --out town.glb\n"
-        "  crofton study radiosity room --runs 64 --shard 0/2 --state part0    half of the runs; the others: 1/2, "
+        "  crofton study radiosity room --runs 64 --shard 0/2 --state part0    # half of the runs; the others: 1/2, "
         "part1\n"
-        "  crofton merge part0 part1 --out whole.state                         then both together\n"
+        "  crofton merge part0 part1 --out whole.state                         # then both together\n"
         "  crofton study radiosity room --runs 64 --state whole.state --out room.glb\n"
         "  crofton study radiosity room --light-field lines.png --stored-lines 16000000\n"
         "  crofton study radiosity level.wad --map MAP01 --method local --json -\n");

@@ -317,10 +317,10 @@ constexpr const char* kTriangulateExamples =
     "bend.\n"
     "\n"
     "Examples:\n"
-    "  crofton triangulate county.geojson --svg county.svg          exact minimum weight, and a picture\n"
-    "  crofton triangulate level.wad --map MAP01 --method delaunay  every sector of one level\n"
-    "  crofton triangulate house.glb --out lighter.glb              the same house with shorter inner edges\n"
-    "  crofton triangulate town --out town.glb                      the built-in town as a file\n";
+    "  crofton triangulate county.geojson --svg county.svg          # exact minimum weight, and a picture\n"
+    "  crofton triangulate level.wad --map MAP01 --method delaunay  # every sector of one level\n"
+    "  crofton triangulate house.glb --out lighter.glb              # the same house with shorter inner edges\n"
+    "  crofton triangulate town --out town.glb                      # the built-in town as a file\n";
 
 }  // namespace
 

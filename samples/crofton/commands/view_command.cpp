@@ -57,14 +57,15 @@ constexpr const char* kScriptHelp =
     "  lose_device true, quit true\n";
 constexpr const char* kViewExamples =
     "Examples:\n"
-    "  crofton view                                        the town\n"
+    "  crofton view                                        # the town\n"
     "  crofton view level.wad --map MAP07\n"
     "  crofton view scene.glb --camera street --bounds aabb\n"
-    "  crofton view, then C until 'clusters', F, fly up    why each triangle is drawn or not\n"
+    "  crofton view                                        # then C until 'clusters', F, fly up: why each triangle is "
+    "drawn or not\n"
     "  crofton pvs town --out sets.crofton && crofton view town --baked sets.crofton\n"
-    "  crofton view regions/ --camera flight               regions by 'crofton bake --regions' come and go\n"
+    "  crofton view regions/ --camera flight               # regions by 'crofton bake --regions' come and go\n"
     "  crofton view --no-window --after 10 --screenshot town.png --json -\n"
-    "  xvfb-run -a crofton view --script tour.json         no display: a virtual one\n";
+    "  xvfb-run -a crofton view --script tour.json         # no display: a virtual one\n";
 
 }  // namespace
 

@@ -8,6 +8,21 @@
 #include <ctime>
 #include <thread>
 #include <vector>
+#ifdef __linux__
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <fstream>
+#endif
+
+// A sanitizer's own memory does not fit into a limit.
+#if !defined(__linux__) || defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define CROFTON_UNLIMITED
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define CROFTON_UNLIMITED
+#endif
+#endif
 
 using namespace crofton;
 
@@ -33,6 +48,36 @@ TEST_SUITE("core/executor") {
             for (std::size_t i = begin; i < end; ++i) sum += i;
         });
         CHECK(sum == 4950);
+    }
+
+    TEST_CASE("a pool takes no more threads than it can have") {
+        std::atomic<std::size_t> sum{0};
+        const auto adds_up = [&sum](ThreadPool& pool) {
+            sum = 0;
+            pool.parallel_for(1000, 1, [&](std::size_t begin, std::size_t, unsigned) { sum += begin; });
+            return sum == 499'500;
+        };
+        {
+            ThreadPool pool(4'000'000'000u);
+            CHECK(pool.concurrency() <= 1024);
+            CHECK(adds_up(pool));
+        }
+#ifndef CROFTON_UNLIMITED
+        // Address space for a few stacks more: the system refuses the next thread.
+        rlimit before{};
+        REQUIRE(getrlimit(RLIMIT_AS, &before) == 0);
+        std::size_t pages = 0;
+        REQUIRE((std::ifstream("/proc/self/statm") >> pages));
+        const rlimit few{pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE)) + (std::size_t{64} << 20),
+                         before.rlim_max};
+        REQUIRE(setrlimit(RLIMIT_AS, &few) == 0);
+        {
+            ThreadPool pool(1000);
+            CHECK((pool.concurrency() > 1 && pool.concurrency() < 100));
+            CHECK(adds_up(pool));
+        }
+        REQUIRE(setrlimit(RLIMIT_AS, &before) == 0);
+#endif
     }
 
     TEST_CASE("zero items call no body") {

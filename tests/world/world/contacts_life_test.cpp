@@ -115,9 +115,11 @@ class Life {
                   [](const Thing& a, const Thing& b) { return a.in_life.index < b.in_life.index; });
         for (std::size_t i = 0; i < things_.size(); ++i) {
             REQUIRE(world_.set_user(things_[i].in_life, i).has_value());
-            const ObjectDescription description{
-                .transform = things_[i].pose, .shape = &*things_[i].body->shape, .user = i};
-            REQUIRE(fresh.set_hidden(fresh.add(description).value(), things_[i].hidden).has_value());
+            const ObjectDescription description{.transform = things_[i].pose,
+                                                .shape = &*things_[i].body->shape,
+                                                .user = i,
+                                                .hidden = things_[i].hidden};
+            REQUIRE(fresh.add(description).has_value());
         }
         REQUIRE(fresh.update().has_value());
         REQUIRE(world_.update().has_value());  // the users

@@ -92,6 +92,13 @@ TEST_SUITE("world/occlusion") {
             REQUIRE(s.world.set_hidden(s.wall, false).has_value());
             CHECK(s.hides());
         }
+        SUBCASE("added hidden, until it is shown") {
+            REQUIRE(s.world.remove(s.wall).has_value());
+            s.wall = s.world.add({.mesh = s.mesh, .node = s.node, .hidden = true}).value();
+            CHECK_FALSE(s.hides());
+            REQUIRE(s.world.set_hidden(s.wall, false).has_value());
+            CHECK(s.hides());
+        }
         SUBCASE("transparent") {
             REQUIRE(s.world.set_occludes(s.wall, false).has_value());
             CHECK_FALSE(s.hides());

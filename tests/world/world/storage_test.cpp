@@ -69,8 +69,7 @@ class Crowd {
             Thing thing;
             thing.box = box();
             thing.hidden = random_.index(5) == 0;
-            thing.handle = world_.add({.bound = thing.box}).value();
-            REQUIRE(world_.set_hidden(thing.handle, thing.hidden).has_value());
+            thing.handle = world_.add({.bound = thing.box, .hidden = thing.hidden}).value();
             things.push_back(thing);
         }
     }

@@ -6,6 +6,7 @@
 #include <crofton/core/error.hpp>
 #include <crofton/core/executor.hpp>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -76,8 +77,13 @@ thread_local const ThreadPool::State* ThreadPool::State::working_for = nullptr;
 
 ThreadPool::ThreadPool(unsigned threads) : state_(Owner<State>::make()) {
     if (threads == 0) threads = std::max(1u, std::thread::hardware_concurrency());
-    for (unsigned worker = 1; worker < threads; ++worker)
-        state_->threads.emplace_back([state = state_.get(), worker] { state->work(worker); });
+    threads = std::min(threads, 1024u);
+    state_->threads.reserve(threads - 1);
+    try {
+        for (unsigned worker = 1; worker < threads; ++worker)
+            state_->threads.emplace_back([state = state_.get(), worker] { state->work(worker); });
+    } catch (const std::system_error&) {  // the system starts no more
+    }
 }
 
 ThreadPool::~ThreadPool() {

@@ -95,6 +95,7 @@ Result<ObjectHandle> World::add(const ObjectDescription& description) {
     object.collides_with = description.collides_with;
     object.occludes = description.occludes;
     object.only_occludes = description.only_occludes;
+    object.shown = !description.hidden;
     const bool has_mesh = !description.mesh.is_null(), has_bound = description.bound.kind != BoundKind::none;
     const bool hangs = has_mesh || (!has_bound && description.shape != nullptr);
     if (has_mesh && has_bound)

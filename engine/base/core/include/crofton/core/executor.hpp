@@ -64,7 +64,7 @@ class Executor {
 // Runs one parallel_for at a time; a second caller waits. A body must not call parallel_for of its own pool.
 class ThreadPool final : public Executor {
   public:
-    // `threads` includes the calling thread, which works too. 0 means one per hardware thread.
+    // `threads` includes the calling one. 0: one per hardware thread. At most 1024, and no more than the system starts.
     explicit ThreadPool(unsigned threads = 0);
     ~ThreadPool() override;
     ThreadPool(const ThreadPool&) = delete;

@@ -195,6 +195,7 @@ struct ObjectDescription {
     // For an object with a mesh. True: the mesh's occluders hide other objects, but no answer contains this object. Use
     // it if your objects are bounds. The occluders must lie within drawn surfaces of the same layers.
     bool only_occludes = false;
+    bool hidden = false;  // as World::set_hidden, from the start
 };
 
 // Controls how a view leaves out objects that other objects hide.
