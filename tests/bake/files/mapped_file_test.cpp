@@ -114,7 +114,8 @@ TEST_SUITE("bake/mapped_file") {
         };
         if (!std::filesystem::exists("/proc/self/maps")) return;
         {
-            REQUIRE(MappedFile::open(file.path()).has_value());
+            const auto mapped = MappedFile::open(file.path());
+            REQUIRE(mapped);
             CHECK(is_mapped());
         }
         CHECK_FALSE(is_mapped());
