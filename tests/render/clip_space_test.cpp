@@ -42,10 +42,9 @@ class Comparison {
         const DrawRange range{first, count, 0, one_sided, unclipped};
         Frame frame{.camera = {}, .transforms = {&transform, 1}, .ranges = {&range, 1}, .environment = {}};
         frame.environment.sky = false;
-        const auto counters = rasterizer_.draw(frame);
-        REQUIRE(counters);
-        CHECK(counters->input_assembly_primitives == count / 3);
-        return counters->clipping_primitives;
+        const auto counters = rasterizer_.draw(frame).value();
+        CHECK(counters.input_assembly_primitives == count / 3);
+        return counters.clipping_primitives;
     }
     void check(const Soup& soup, const glm::mat4& matrix) {
         upload(soup);

@@ -76,10 +76,9 @@ constexpr std::uint32_t kLabelledIndices[] = {0, 1, 2};
 
 // A frame with all that a frame can have, at half the resolution, read back.
 Image draw_labelled(Device& device) {
-    auto rasterizer = Rasterizer::create(device, {32, 32});
-    REQUIRE(rasterizer);
-    REQUIRE(rasterizer->set_geometry(kLabelledTriangle, kLabelledIndices));
-    REQUIRE(rasterizer->resize(32, 32, 0, 0.5f));
+    auto rasterizer = Rasterizer::create(device, {32, 32}).value();
+    REQUIRE(rasterizer.set_geometry(kLabelledTriangle, kLabelledIndices));
+    REQUIRE(rasterizer.resize(32, 32, 0, 0.5f));
     Camera camera;
     camera.position = {0, 0, 3};
     camera.aspect = 1.0;
@@ -87,10 +86,10 @@ Image draw_labelled(Device& device) {
     const DrawTransform transforms[] = {draw_transform(ModelToClip(camera)(linear, glm::dvec3(0.0)), linear)};
     const DrawRange ranges[] = {{.first_index = 0, .index_count = 3, .transform = 0}};
     const LineVertex lines[] = {{{-1, 0, -3}, 0xffffffffu}, {{1, 0, -3}, 0xffffffffu}};
-    REQUIRE(rasterizer->draw(
+    REQUIRE(rasterizer.draw(
         {.camera = camera, .transforms = transforms, .ranges = ranges, .wire_ranges = ranges, .lines = lines}));
     Image image;
-    REQUIRE(rasterizer->read_pixels(image));
+    REQUIRE(rasterizer.read_pixels(image));
     return image;
 }
 
@@ -162,10 +161,9 @@ TEST_SUITE("render/debug_labels") {
         CHECK((plain->context().labels.begin == nullptr));
         DeviceOptions options = device_options();
         options.instance_extensions = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME};
-        auto labelled = Device::create(options);
-        REQUIRE(labelled);
-        CHECK((labelled->context().labels.set_name != nullptr));
-        const Image without = draw_labelled(*plain), with = draw_labelled(*labelled);
+        auto labelled = Device::create(options).value();
+        CHECK((labelled.context().labels.set_name != nullptr));
+        const Image without = draw_labelled(*plain), with = draw_labelled(labelled);
         CHECK(without.rgba == with.rgba);
     }
 }

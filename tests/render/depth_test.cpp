@@ -104,12 +104,11 @@ WrongPixels count_wrong(Rasterizer& rasterizer, const Slivers& scene, bool one_s
 TEST_SUITE("render/depth") {
     TEST_CASE("a wall hides all that lies behind it: triangles seen edge-on, and those of three points on a line") {
         CROFTON_REQUIRE_DEVICE(device);
-        auto rasterizer = Rasterizer::create(*device, {kWidth, kHeight});
-        REQUIRE(rasterizer);
+        auto rasterizer = Rasterizer::create(*device, {kWidth, kHeight}).value();
         for (const double width : kWidths)
             for (std::uint64_t seed = 0; seed < 10; ++seed) {
                 const WrongPixels wrong =
-                    count_wrong(*rasterizer, random_slivers(seed, 2000, width), seed % 3 != 0, seed % 3 == 1);
+                    count_wrong(rasterizer, random_slivers(seed, 2000, width), seed % 3 != 0, seed % 3 == 1);
                 CAPTURE(width);
                 CAPTURE(seed);
                 CHECK(wrong.numbers == 0);
@@ -119,8 +118,7 @@ TEST_SUITE("render/depth") {
     }
     TEST_CASE("two sheets of nearly the same depth and slope keep their order") {
         CROFTON_REQUIRE_DEVICE(device);
-        auto rasterizer = Rasterizer::create(*device, {kWidth, kHeight});
-        REQUIRE(rasterizer);
+        auto rasterizer = Rasterizer::create(*device, {kWidth, kHeight}).value();
         // They fall away from the eye; the second is nearer by a hundredth of what depth changes from pixel to pixel.
         Camera camera;
         camera.aspect = static_cast<double>(kWidth) / kHeight;
@@ -128,14 +126,14 @@ TEST_SUITE("render/depth") {
         const Vertex vertices[] = {
             {{-50, -1, -2}, {0, 1, 0}, {}}, {{50, -1, -2}, {0, 1, 0}, {}}, {{0, -1, -400}, {0, 1, 0}, {}}};
         const std::uint32_t indices[] = {0, 1, 2};
-        REQUIRE(rasterizer->set_geometry(vertices, indices));
+        REQUIRE(rasterizer.set_geometry(vertices, indices));
         const double nearer = 1.0 - 0.01 / 180.0;
         const DrawTransform transforms[] = {draw_transform(to_clip(glm::dmat3(1.0), {}), glm::dmat3(1.0)),
                                             draw_transform(to_clip(glm::dmat3(nearer), {}), glm::dmat3(1.0))};
         const DrawRange ranges[] = {{0, 3, 0}, {0, 3, 1}};
         const Frame frame{.camera = camera, .transforms = transforms, .ranges = ranges};
         Vector<std::uint32_t> owners;
-        REQUIRE(rasterizer->draw_owners(frame, owners));
+        REQUIRE(rasterizer.draw_owners(frame, owners));
         std::size_t first = 0, second = 0;
         for (const std::uint32_t owner : owners) {
             first += owner == 0;

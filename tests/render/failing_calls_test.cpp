@@ -95,10 +95,8 @@ TEST_SUITE("render/failing_calls") {
     TEST_CASE("each call fails once while a rasterizer is made: an error names it, and the next one draws") {
         CROFTON_REQUIRE_DEVICE(device);
         wrap_calls(*device);
-        auto first = make_ready(*device);
-        REQUIRE(first.has_value());
-        const auto expected = draw(*first);
-        REQUIRE(expected.has_value());
+        auto first = make_ready(*device).value();
+        const auto expected = draw(first).value();
         for (std::int64_t n = 0;; ++n) {
             CAPTURE(n);
             has_failed = false;
@@ -109,9 +107,8 @@ TEST_SUITE("render/failing_calls") {
             if (!made) check_message(made.error());
             auto again = made ? std::move(made) : make_ready(*device);
             REQUIRE(again.has_value());
-            const auto image = draw(*again);
-            REQUIRE(image.has_value());
-            CHECK(image->rgba == expected->rgba);
+            const auto image = draw(*again).value();
+            CHECK(image.rgba == expected.rgba);
             if (!has_failed) {
                 MESSAGE(n << " calls failed while a rasterizer was made");
                 CHECK(n > 20);
@@ -124,21 +121,18 @@ TEST_SUITE("render/failing_calls") {
     TEST_CASE("each call fails once while a picture is drawn: an error names it, and the same rasterizer draws") {
         CROFTON_REQUIRE_DEVICE(device);
         wrap_calls(*device);
-        auto rasterizer = make_ready(*device);
-        REQUIRE(rasterizer.has_value());
-        const auto expected = draw(*rasterizer);
-        REQUIRE(expected.has_value());
+        auto rasterizer = make_ready(*device).value();
+        const auto expected = draw(rasterizer).value();
         for (std::int64_t n = 0;; ++n) {
             CAPTURE(n);
             has_failed = false;
             calls_left = n;
-            const auto image = draw(*rasterizer);
+            const auto image = draw(rasterizer);
             calls_left = kNever;
             CHECK(image.has_value() == !has_failed);
             if (!image) check_message(image.error());
-            const auto again = draw(*rasterizer);
-            REQUIRE(again.has_value());
-            CHECK(again->rgba == expected->rgba);
+            const auto again = draw(rasterizer).value();
+            CHECK(again.rgba == expected.rgba);
             if (!has_failed) {
                 MESSAGE(n << " calls failed while a picture was drawn");
                 CHECK(n > 3);

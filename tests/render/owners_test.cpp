@@ -146,15 +146,14 @@ Expected expected_owner(const OwnerScene& scene, std::uint32_t px, std::uint32_t
 TEST_SUITE("render/owners") {
     TEST_CASE("each pixel is owned by the triangle that a ray through its centre hits first") {
         CROFTON_REQUIRE_DEVICE(device);
-        auto rasterizer = Rasterizer::create(*device, {kSide, kSide});
-        REQUIRE(rasterizer);
+        auto rasterizer = Rasterizer::create(*device, {kSide, kSide}).value();
         Vector<std::uint32_t> owners;
         std::size_t compared = 0, owned = 0;
         for (std::uint64_t seed = 0; seed < 24; ++seed) {
             const OwnerScene scene = random_scene(seed);
-            REQUIRE(rasterizer->set_geometry(scene.vertices, scene.indices));
+            REQUIRE(rasterizer.set_geometry(scene.vertices, scene.indices));
             const Frame frame{.camera = scene.camera, .transforms = scene.transforms, .ranges = scene.ranges};
-            REQUIRE(rasterizer->draw_owners(frame, owners));
+            REQUIRE(rasterizer.draw_owners(frame, owners));
             REQUIRE(owners.size() == kSide * kSide);
             for (std::uint32_t p = 0; p < owners.size(); ++p) {
                 const Expected expected = expected_owner(scene, p % kSide, p / kSide);
@@ -172,15 +171,14 @@ TEST_SUITE("render/owners") {
     }
     TEST_CASE("triangles that own no pixel can be left out: the others own the same pixels") {
         CROFTON_REQUIRE_DEVICE(device);
-        auto rasterizer = Rasterizer::create(*device, {kSide, kSide});
-        REQUIRE(rasterizer);
+        auto rasterizer = Rasterizer::create(*device, {kSide, kSide}).value();
         Vector<std::uint32_t> all, fewer;
         std::size_t owning = 0;
         for (std::uint64_t seed = 100; seed < 140; ++seed) {
             const OwnerScene scene = random_scene(seed);
-            REQUIRE(rasterizer->set_geometry(scene.vertices, scene.indices));
+            REQUIRE(rasterizer.set_geometry(scene.vertices, scene.indices));
             Frame frame{.camera = scene.camera, .transforms = scene.transforms, .ranges = scene.ranges};
-            REQUIRE(rasterizer->draw_owners(frame, all));
+            REQUIRE(rasterizer.draw_owners(frame, all));
             // Each triangle that owns a pixel as a range of its own, in the same order.
             std::vector<DrawRange> ranges;
             std::vector<std::uint32_t> kept;
@@ -195,7 +193,7 @@ TEST_SUITE("render/owners") {
                     }
             owning += kept.size();
             frame.ranges = ranges;
-            REQUIRE(rasterizer->draw_owners(frame, fewer));
+            REQUIRE(rasterizer.draw_owners(frame, fewer));
             for (std::uint32_t& owner : fewer)
                 if (owner != kNoTriangle) owner = kept[owner];
             CHECK(static_cast<bool>(fewer == all));
@@ -204,14 +202,13 @@ TEST_SUITE("render/owners") {
     }
     TEST_CASE("the picture of numbers has a pixel where the picture of colours has one") {
         CROFTON_REQUIRE_DEVICE(device);
-        auto rasterizer = Rasterizer::create(*device, {kSide, kSide});
-        REQUIRE(rasterizer);
-        REQUIRE(rasterizer->resize(kSide, kSide, 1));
+        auto rasterizer = Rasterizer::create(*device, {kSide, kSide}).value();
+        REQUIRE(rasterizer.resize(kSide, kSide, 1));
         Vector<std::uint32_t> owners;
         Image image;
         for (std::uint64_t seed = 200; seed < 210; ++seed) {
             OwnerScene scene = random_scene(seed);
-            REQUIRE(rasterizer->set_geometry(scene.vertices, scene.indices));
+            REQUIRE(rasterizer.set_geometry(scene.vertices, scene.indices));
             for (std::size_t t = 0; t < scene.transforms.size(); ++t) {
                 scene.transforms[t].unlit = 1.0f;
                 const float red = (static_cast<float>(t) + 1.0f) / 255.0f;
@@ -219,9 +216,9 @@ TEST_SUITE("render/owners") {
             }
             Frame frame{.camera = scene.camera, .transforms = scene.transforms, .ranges = scene.ranges};
             frame.environment.haze_distance = 0.0f;
-            REQUIRE(rasterizer->draw(frame));
-            REQUIRE(rasterizer->draw_owners(frame, owners, 1));
-            REQUIRE(rasterizer->read_pixels(image));
+            REQUIRE(rasterizer.draw(frame));
+            REQUIRE(rasterizer.draw_owners(frame, owners, 1));
+            REQUIRE(rasterizer.read_pixels(image));
             for (std::size_t p = 0; p < owners.size(); ++p) {
                 std::uint32_t transform = 0, number = owners[p];
                 if (number == kNoTriangle) continue;
@@ -236,47 +233,45 @@ TEST_SUITE("render/owners") {
     }
     TEST_CASE("numbers keep all their bits, and nothing owns the pixels of an empty frame") {
         CROFTON_REQUIRE_DEVICE(device);
-        auto rasterizer = Rasterizer::create(*device, {kSide, kSide});
-        REQUIRE(rasterizer);
+        auto rasterizer = Rasterizer::create(*device, {kSide, kSide}).value();
         // Ahead of a camera at the origin; and far more triangles of no size.
         const Vertex vertices[] = {{{-50, -50, -5}, {0, 0, 1}, {1, 1, 1}},
                                    {{50, -50, -5}, {0, 0, 1}, {1, 1, 1}},
                                    {{0, 90, -5}, {0, 0, 1}, {}}};
         Vector<std::uint32_t> indices{0, 1, 2};
         indices.resize(3 * 300'000, 0u);
-        REQUIRE(rasterizer->set_geometry(vertices, indices));
+        REQUIRE(rasterizer.set_geometry(vertices, indices));
         Camera camera;
         camera.aspect = 1.0;
         const DrawTransform transform = draw_transform(ModelToClip(camera)(glm::dmat3(1.0), {}), glm::dmat3(1.0));
         Vector<std::uint32_t> owners;
         Frame frame{.camera = camera, .transforms = {&transform, 1}, .ranges = {}};
-        REQUIRE(rasterizer->draw_owners(frame, owners));
+        REQUIRE(rasterizer.draw_owners(frame, owners));
         CHECK(owners == Vector<std::uint32_t>(kSide * kSide, kNoTriangle));
         const DrawRange nothing{3, 3 * 299'999, 0, true, true};
         for (const std::size_t before : {0u, 1u, 57u}) {
             std::vector<DrawRange> ranges(before, nothing);
             ranges.push_back({0, 3, 0, true, true});
             frame.ranges = ranges;
-            REQUIRE(rasterizer->draw_owners(frame, owners));
+            REQUIRE(rasterizer.draw_owners(frame, owners));
             CHECK(owners == Vector<std::uint32_t>(kSide * kSide, static_cast<std::uint32_t>(299'999 * before)));
         }
         CHECK(device->validation_messages().empty());
     }
     TEST_CASE("the first of several triangles at the same place owns the pixels, whatever faces are shown") {
         CROFTON_REQUIRE_DEVICE(device);
-        auto rasterizer = Rasterizer::create(*device, {kSide, kSide});
-        REQUIRE(rasterizer);
+        auto rasterizer = Rasterizer::create(*device, {kSide, kSide}).value();
         const Vertex vertices[] = {
             {{-1, -1, -5}, {0, 0, 1}, {1, 1, 1}}, {{1, -1, -5}, {0, 0, 1}, {1, 1, 1}}, {{0, 1, -5}, {0, 0, 1}, {}}};
         const std::uint32_t indices[] = {0, 1, 2};
-        REQUIRE(rasterizer->set_geometry(vertices, indices));
+        REQUIRE(rasterizer.set_geometry(vertices, indices));
         Camera camera;
         camera.aspect = 1.0;
         const DrawTransform transform = draw_transform(ModelToClip(camera)(glm::dmat3(1.0), {}), glm::dmat3(1.0));
         std::vector<DrawRange> ranges{{0, 3, 0, false, true}, {0, 3, 0, true, false}, {0, 3, 0, true, true}};
         for (std::size_t turn = 0; turn < 6; ++turn) {
             Vector<std::uint32_t> owners;
-            REQUIRE(rasterizer->draw_owners({camera, {&transform, 1}, ranges}, owners));
+            REQUIRE(rasterizer.draw_owners({camera, {&transform, 1}, ranges}, owners));
             CHECK(std::count(owners.begin(), owners.end(), 0u) > 50);
             CHECK(std::count(owners.begin(), owners.end(), 1u) == 0);
             CHECK(std::count(owners.begin(), owners.end(), 2u) == 0);
@@ -285,20 +280,19 @@ TEST_SUITE("render/owners") {
     }
     TEST_CASE("bad ranges are refused by name, and so is a picture of fewer pixels") {
         CROFTON_REQUIRE_DEVICE(device);
-        auto rasterizer = Rasterizer::create(*device, {kSide, kSide});
-        REQUIRE(rasterizer);
+        auto rasterizer = Rasterizer::create(*device, {kSide, kSide}).value();
         const OwnerScene scene = random_scene(1);
-        REQUIRE(rasterizer->set_geometry(scene.vertices, scene.indices));
+        REQUIRE(rasterizer.set_geometry(scene.vertices, scene.indices));
         std::vector<DrawRange> ranges = scene.ranges;
         Frame frame{.camera = scene.camera, .transforms = scene.transforms, .ranges = ranges};
         Vector<std::uint32_t> owners;
         ranges[2].transform = static_cast<std::uint32_t>(scene.transforms.size());
-        CHECK(error_of(rasterizer->draw_owners(frame, owners)).item == 2);
+        CHECK(error_of(rasterizer.draw_owners(frame, owners)).item == 2);
         ranges[2] = {0, 4, 0};
-        CHECK(error_of(rasterizer->draw_owners(frame, owners)).code == ErrorCode::invalid_argument);
+        CHECK(error_of(rasterizer.draw_owners(frame, owners)).code == ErrorCode::invalid_argument);
         ranges[2] = scene.ranges[2];
-        REQUIRE(rasterizer->resize(kSide, kSide, 1, 0.5f));
-        CHECK(error_of(rasterizer->draw_owners(frame, owners, 1)).code == ErrorCode::invalid_argument);
-        CHECK(rasterizer->draw_owners(frame, owners));
+        REQUIRE(rasterizer.resize(kSide, kSide, 1, 0.5f));
+        CHECK(error_of(rasterizer.draw_owners(frame, owners, 1)).code == ErrorCode::invalid_argument);
+        CHECK(rasterizer.draw_owners(frame, owners));
     }
 }

@@ -48,10 +48,9 @@ std::uint64_t count_color(const Image& image, int r, int g, int b) {
 }
 
 Rasterizer make_rasterizer(Device& device, std::uint32_t size = 64) {
-    auto rasterizer = Rasterizer::create(device, {size, size});
-    REQUIRE(rasterizer);
-    REQUIRE(rasterizer->set_geometry(kVertices, kIndices));
-    return std::move(*rasterizer);
+    auto rasterizer = Rasterizer::create(device, {size, size}).value();
+    REQUIRE(rasterizer.set_geometry(kVertices, kIndices));
+    return rasterizer;
 }
 
 }  // namespace
@@ -78,25 +77,22 @@ TEST_SUITE("render/rasterizer") {
             CHECK(error_of(refused).item == 1);
         }
         const DrawRange good{0, 9, 0};
-        const auto counters = rasterizer.draw({camera, {&transform, 1}, {&good, 1}});
-        REQUIRE(counters);
-        CHECK(counters->input_assembly_primitives == 3);
+        const auto counters = rasterizer.draw({camera, {&transform, 1}, {&good, 1}}).value();
+        CHECK(counters.input_assembly_primitives == 3);
         CHECK(device->validation_messages().empty());
     }
     TEST_CASE("a frame of nothing counts nothing and shows the background, even without geometry") {
         CROFTON_REQUIRE_DEVICE(device);
-        auto rasterizer = Rasterizer::create(*device, {32, 16});
-        REQUIRE(rasterizer);
+        auto rasterizer = Rasterizer::create(*device, {32, 16}).value();
         Frame frame{.camera = camera_at(10.0), .transforms = {}, .ranges = {}, .environment = {}};
         frame.environment.sky = false;
         frame.environment.horizon = {0.0f, 1.0f, 0.0f};
-        const auto counters = rasterizer->draw(frame);
-        REQUIRE(counters);
-        CHECK(counters->input_assembly_primitives == 0);
-        CHECK(counters->clipping_primitives == 0);
-        CHECK(counters->samples_passed == 0);
+        const auto counters = rasterizer.draw(frame).value();
+        CHECK(counters.input_assembly_primitives == 0);
+        CHECK(counters.clipping_primitives == 0);
+        CHECK(counters.samples_passed == 0);
         Image image;
-        REQUIRE(rasterizer->read_pixels(image));
+        REQUIRE(rasterizer.read_pixels(image));
         CHECK(image.width == 32);
         CHECK(count_color(image, 0, 255, 0) == 32 * 16);
         CHECK(device->validation_messages().empty());
@@ -201,8 +197,7 @@ TEST_SUITE("render/rasterizer") {
         for (const bool sky : {true, false}) {
             Frame frame{.camera = camera, .transforms = own, .ranges = separate, .environment = {}};
             frame.environment.sky = sky;
-            const auto expected = rasterizer.draw(frame);
-            REQUIRE(expected);
+            const auto expected = rasterizer.draw(frame).value();
             CHECK(rasterizer.draw_count() == 1500);
             Image one, other;
             REQUIRE(rasterizer.read_pixels(one));
@@ -215,9 +210,9 @@ TEST_SUITE("render/rasterizer") {
             CHECK((rasterizer.draw_count() < 600) == device->counts_exactly());
             REQUIRE(rasterizer.read_pixels(other));
             CHECK(one.rgba == other.rgba);
-            CHECK(counters->input_assembly_primitives == expected->input_assembly_primitives);
-            CHECK(counters->clipping_primitives == expected->clipping_primitives);
-            CHECK(counters->samples_passed == expected->samples_passed);
+            CHECK(counters->input_assembly_primitives == expected.input_assembly_primitives);
+            CHECK(counters->clipping_primitives == expected.clipping_primitives);
+            CHECK(counters->samples_passed == expected.samples_passed);
         }
         CHECK(device->validation_messages().empty());
     }
@@ -236,11 +231,10 @@ TEST_SUITE("render/rasterizer") {
             ranges.push_back({0, 6, i});
         }
         Frame frame{.camera = camera, .transforms = transforms, .ranges = ranges, .environment = {}};
-        const auto counters = rasterizer.draw(frame);
-        REQUIRE(counters);
+        const auto counters = rasterizer.draw(frame).value();
         CHECK(rasterizer.draw_count() == 5000);
-        CHECK(counters->input_assembly_primitives == 10000);
-        CHECK(counters->samples_passed == 5000);
+        CHECK(counters.input_assembly_primitives == 10000);
+        CHECK(counters.samples_passed == 5000);
         Image image;
         REQUIRE(rasterizer.read_pixels(image));
         std::uint32_t wrong = 0;
@@ -262,13 +256,12 @@ TEST_SUITE("render/rasterizer") {
             const DrawRange ranges[] = {{6, 6, 1, true, unclipped}, {0, 6, 0, true, unclipped}};
             Frame frame{.camera = camera, .transforms = transforms, .ranges = ranges, .environment = {}};
             frame.environment.sky = false;
-            const auto counters = rasterizer.draw(frame);
-            REQUIRE(counters);
+            const auto counters = rasterizer.draw(frame).value();
             CHECK(rasterizer.draw_count() == 2);
-            CHECK(counters->input_assembly_primitives == 4);
-            CHECK(counters->clipping_invocations == 4);
-            CHECK(counters->clipping_primitives == 4);
-            CHECK(counters->samples_passed == 64 * 64);
+            CHECK(counters.input_assembly_primitives == 4);
+            CHECK(counters.clipping_invocations == 4);
+            CHECK(counters.clipping_primitives == 4);
+            CHECK(counters.samples_passed == 64 * 64);
             Image image;
             REQUIRE(rasterizer.read_pixels(image));
             CHECK(count_color(image, 0, 0, 255) == 64 * 64);
@@ -298,11 +291,10 @@ TEST_SUITE("render/rasterizer") {
         ranges.insert(ranges.end(), 45'000, {6, 3, 0});
         Frame frame{.camera = camera, .transforms = transforms, .ranges = ranges, .environment = {}};
         frame.environment.sky = false;
-        const auto counters = rasterizer.draw(frame);
-        REQUIRE(counters);
-        CHECK(counters->input_assembly_primitives == 90'002);
-        CHECK(counters->clipping_primitives == 90'002);
-        CHECK(counters->samples_passed == 64 * 64);  // the small triangle's first, then the rest of the square
+        const auto counters = rasterizer.draw(frame).value();
+        CHECK(counters.input_assembly_primitives == 90'002);
+        CHECK(counters.clipping_primitives == 90'002);
+        CHECK(counters.samples_passed == 64 * 64);  // the small triangle's first, then the rest of the square
         Image image;
         REQUIRE(rasterizer.read_pixels(image));
         const std::uint64_t green = count_color(image, 0, 255, 0);
@@ -319,11 +311,10 @@ TEST_SUITE("render/rasterizer") {
         const DrawRange whole{0, 6, 0}, wire{0, 6, 1};
         const LineVertex lines[] = {{{-1, 0.51f, -8}, 0xff00ff00u}, {{1, 0.51f, -8}, 0xff00ff00u}};
         const Frame frame{camera, transforms, {&whole, 1}, {&wire, 1}, lines, {}};
-        const auto counters = rasterizer.draw(frame);
-        REQUIRE(counters);
-        CHECK(counters->input_assembly_primitives == 2);
-        CHECK(counters->clipping_primitives == 2);
-        CHECK(counters->samples_passed == 64 * 64);
+        const auto counters = rasterizer.draw(frame).value();
+        CHECK(counters.input_assembly_primitives == 2);
+        CHECK(counters.clipping_primitives == 2);
+        CHECK(counters.samples_passed == 64 * 64);
         Image image;
         REQUIRE(rasterizer.read_pixels(image));
         CHECK(count_color(image, 0, 255, 0) == 64);      // one row
@@ -339,9 +330,8 @@ TEST_SUITE("render/rasterizer") {
         const DrawRange whole{0, 6, 0};
         for (const std::uint32_t size : {1u, 7u, 64u, 333u, 64u}) {
             REQUIRE(rasterizer.resize(size, size));
-            const auto counters = rasterizer.draw({camera, {&transform, 1}, {&whole, 1}});
-            REQUIRE(counters);
-            CHECK(counters->samples_passed == std::uint64_t{size} * size);
+            const auto counters = rasterizer.draw({camera, {&transform, 1}, {&whole, 1}}).value();
+            CHECK(counters.samples_passed == std::uint64_t{size} * size);
         }
         CHECK(device->validation_messages().empty());
     }
@@ -357,11 +347,10 @@ TEST_SUITE("render/rasterizer") {
             CHECK(rasterizer.width() == 64);
             Image image;
             CHECK_FALSE(rasterizer.read_pixels(image));
-            const auto counters = rasterizer.draw({camera, {&transform, 1}, {&whole, 1}});
-            REQUIRE(counters);
-            CHECK(counters->samples_passed == std::uint64_t{drawn} * drawn);
-            CHECK(counters->input_assembly_primitives == 2);
-            CHECK(counters->clipping_primitives == 2);
+            const auto counters = rasterizer.draw({camera, {&transform, 1}, {&whole, 1}}).value();
+            CHECK(counters.samples_passed == std::uint64_t{drawn} * drawn);
+            CHECK(counters.input_assembly_primitives == 2);
+            CHECK(counters.clipping_primitives == 2);
             REQUIRE(rasterizer.read_pixels(image));
             CHECK(image.width == 64);
             CHECK(count_color(image, 0, 0, 255) == 64 * 64);

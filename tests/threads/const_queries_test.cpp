@@ -230,14 +230,14 @@ TEST_SUITE("threads/const_queries") {
     TEST_CASE("a world with meshes, bounds and occluders answers views, rays and shapes") {
         World world({.updates_to_rest = 2});
         const TriangleMesh mesh = bumpy(10);
-        const auto id = world.add_mesh({.positions = mesh.positions, .indices = mesh.indices, .occluders = true});
-        REQUIRE(id.has_value());
+        const auto id =
+            world.add_mesh({.positions = mesh.positions, .indices = mesh.indices, .occluders = true}).value();
         NearMisses random(12);
         std::vector<ObjectHandle> objects;
         for (int i = 0; i < 400; ++i) {
             ObjectDescription description;
             if (i % 8 == 0) {
-                description.mesh = *id;
+                description.mesh = id;
                 description.transform = Transform{glm::dmat3(1.0), 25.0 * random.direction()};
             } else {
                 description.bound = oracle::random_box(random, glm::dvec3(0.0), 30.0);

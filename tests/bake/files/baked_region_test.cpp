@@ -121,9 +121,8 @@ TEST_SUITE("bake/baked_region") {
         World world({.pairs = false}), single({.pairs = false});
         Region region;
         {
-            const auto baked = BakedScene::open(path.path());
-            REQUIRE(baked);
-            region = prepare_region(*baked).value();
+            const auto baked = BakedScene::open(path.path()).value();
+            region = prepare_region(baked).value();
         }  // nothing of the file is needed any more
         REQUIRE(region.object_count() == village.scene.instance_count());
         std::vector<MeshHandle> meshes;
@@ -194,9 +193,8 @@ TEST_SUITE("bake/baked_region") {
         oracle::NearMisses random(6);
         const Village village(random);
         const Vector<std::byte> file = village.file();
-        const auto baked = BakedScene::from_memory(file);
-        REQUIRE(baked);
-        const Region region = prepare_region(*baked, {.triangles = false}).value();
+        const auto baked = BakedScene::from_memory(file).value();
+        const Region region = prepare_region(baked, {.triangles = false}).value();
         std::size_t with_occluders = 0;
         for (std::uint32_t i = 0; i < region.object_count(); ++i) {
             const std::uint32_t mesh = region.mesh_of(i);
@@ -207,13 +205,13 @@ TEST_SUITE("bake/baked_region") {
             REQUIRE(mesh != kNoIndex);
             REQUIRE(region.clusters_of(mesh) != nullptr);
             const auto order = region.clusters_of(mesh)->triangle_order(),
-                       expected = baked->clusters(village.scene.mesh_of(i))->triangle_order();
+                       expected = baked.clusters(village.scene.mesh_of(i))->triangle_order();
             CHECK(std::equal(order.begin(), order.end(), expected.begin(), expected.end()));
             with_occluders += !region.occluders_of(mesh).empty();
             if (!region.occluders_of(mesh).empty()) CHECK(village.scene.mesh_of(i) == 0);
         }
         CHECK(with_occluders == 20);
-        const Region plain = prepare_region(*baked, {.triangles = false, .occluders = false}).value();
+        const Region plain = prepare_region(baked, {.triangles = false, .occluders = false}).value();
         for (std::uint32_t i = 0; i < plain.object_count(); ++i) {
             if (i == 7) continue;
             CHECK(plain.occluders_of(plain.mesh_of(i)).empty());
@@ -222,9 +220,8 @@ TEST_SUITE("bake/baked_region") {
         World world({.pairs = false});
         world.attach(region, {}).value();
         world.update().value();
-        const auto hit = world.raycast({{-100.0, 0.0, 0.0}, {1.0, 0.0, 0.01}});
-        REQUIRE(hit);
-        CHECK(hit->triangle == kNoTriangle);  // boxes stand for the meshes
+        const auto hit = world.raycast({{-100.0, 0.0, 0.0}, {1.0, 0.0, 0.01}}).value();
+        CHECK(hit.triangle == kNoTriangle);  // boxes stand for the meshes
     }
 
     TEST_CASE(
@@ -239,9 +236,8 @@ TEST_SUITE("bake/baked_region") {
             });
         };
         const Vector<std::byte> wide = with_crate_of(0.75f), narrow = with_crate_of(0.49f);
-        const auto baked = BakedScene::from_memory(wide);
-        REQUIRE(baked);
-        const Region region = prepare_region(*baked, {.triangles = false}).value();
+        const auto baked = BakedScene::from_memory(wide).value();
+        const Region region = prepare_region(baked, {.triangles = false}).value();
         World world({.pairs = false});
         const RegionHandle attached = world.attach(region, {}).value();
         std::size_t crates = 0;
@@ -270,11 +266,10 @@ TEST_SUITE("bake/baked_region") {
         const Village village(random);
         Vector<std::byte> file = village.file();
         {
-            const auto baked = BakedScene::from_memory(file);
-            REQUIRE(baked);
+            const auto baked = BakedScene::from_memory(file).value();
             BakedRegionOptions options;
             options.region.max_objects = 3;
-            CHECK(error_of(prepare_region(*baked, options)).code == ErrorCode::out_of_range);
+            CHECK(error_of(prepare_region(baked, options)).code == ErrorCode::out_of_range);
         }
         file[file.size() / 2] ^= std::byte{1};
         CHECK(!BakedScene::from_memory(file));

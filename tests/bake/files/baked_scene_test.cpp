@@ -32,10 +32,9 @@ scene::Scene sample_scene(unsigned nodes) {
     for (unsigned i = 0; i < nodes; ++i) {
         Transform local;
         local.translation = {1.5, 0.0, 0.25};
-        const auto node = scene.add_node(parent, local, i % 5 == 0 ? 3u : ~0u);
-        REQUIRE(node);
-        if (i % 10 == 0) parent = *node;
-        REQUIRE(scene.add_instance(*node, i % 2));
+        const auto node = scene.add_node(parent, local, i % 5 == 0 ? 3u : ~0u).value();
+        if (i % 10 == 0) parent = node;
+        REQUIRE(scene.add_instance(node, i % 2));
     }
     if (nodes > 3) REQUIRE(scene.remove_instance(3));
     if (nodes > 20) {
@@ -90,15 +89,13 @@ TEST_SUITE("bake/baked_scene") {
     }
 
     TEST_CASE("a file whose checksums are right but whose numbers are not is refused or harmless, never followed") {
-        const auto good = bake::bake(sample_scene(4));
-        REQUIRE(good);
-        const auto reader = Reader::open(*good);
-        REQUIRE(reader);
+        const auto good = bake::bake(sample_scene(4)).value();
+        const auto reader = Reader::open(good).value();
         std::size_t refused = 0;
-        for (std::size_t target = 0; target < reader->sections().size(); ++target)
-            for (std::size_t word = 0; word + 4 <= reader->sections()[target].size; word += 4) {
-                Vector<std::byte> file = *good;
-                std::memset(file.data() + reader->sections()[target].offset + word, 0xff, 4);
+        for (std::size_t target = 0; target < reader.sections().size(); ++target)
+            for (std::size_t word = 0; word + 4 <= reader.sections()[target].size; word += 4) {
+                Vector<std::byte> file = good;
+                std::memset(file.data() + reader.sections()[target].offset + word, 0xff, 4);
                 bake_test::make_sums_right(file);
                 const auto baked = BakedScene::from_memory(file);
                 refused += baked ? 0 : 1;
@@ -109,11 +106,9 @@ TEST_SUITE("bake/baked_scene") {
 
     TEST_CASE("an empty scene is baked and read") {
         const scene::Scene scene;
-        const auto file = bake::bake(scene);
-        REQUIRE(file);
-        const auto baked = BakedScene::from_memory(*file);
-        REQUIRE(baked);
-        check_same(scene, *baked);
+        const auto file = bake::bake(scene).value();
+        const auto baked = BakedScene::from_memory(file).value();
+        check_same(scene, baked);
     }
 
     TEST_CASE("a mesh without colours, whose arrays are empty or end with their section, is baked and read") {
@@ -122,53 +117,44 @@ TEST_SUITE("bake/baked_scene") {
         mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
         mesh.indices = {0, 1, 2};
         REQUIRE(scene.add_mesh(mesh, ""));
-        const auto file = bake::bake(scene);
-        REQUIRE(file);
-        const auto baked = BakedScene::from_memory(*file);
-        REQUIRE(baked);
-        check_same(scene, *baked);
+        const auto file = bake::bake(scene).value();
+        const auto baked = BakedScene::from_memory(file).value();
+        check_same(scene, baked);
     }
 
     TEST_CASE("a baked scene comes back unchanged, from memory and from a file") {
         const scene::Scene scene = sample_scene(200);
-        const auto file = bake::bake(scene);
-        REQUIRE(file);
-        const auto from_memory = BakedScene::from_memory(*file);
-        REQUIRE(from_memory);
-        check_same(scene, *from_memory);
-        const auto polygon = from_memory->polygon(1);
-        REQUIRE(polygon);
-        CHECK(polygon->points.size() == 4);
-        CHECK(polygon->ring_ends[0] == 4);
-        CHECK(polygon->u == glm::dvec3(0, 0, 1));
-        const bake_test::TemporaryFile on_disk(*file);
-        const auto opened = BakedScene::open(on_disk.path());
-        REQUIRE(opened);
-        check_same(scene, *opened);
+        const auto file = bake::bake(scene).value();
+        const auto from_memory = BakedScene::from_memory(file).value();
+        check_same(scene, from_memory);
+        const auto polygon = from_memory.polygon(1).value();
+        CHECK(polygon.points.size() == 4);
+        CHECK(polygon.ring_ends[0] == 4);
+        CHECK(polygon.u == glm::dvec3(0, 0, 1));
+        const bake_test::TemporaryFile on_disk(file);
+        const auto opened = BakedScene::open(on_disk.path()).value();
+        check_same(scene, opened);
     }
 
     TEST_CASE("looks and clusters of meshes are in the file, and a file without them says so") {
         const scene::Scene scene = sample_scene(10);
         const MeshLook looks[] = {{.one_sided = true, .unlit = true}, {.flat = true}};
         ThreadPool pool(2);
-        const auto file = bake::bake(scene, pool, {.looks = looks});
-        REQUIRE(file);
-        const auto baked = BakedScene::from_memory(*file);
-        REQUIRE(baked);
-        check_same(scene, *baked);
+        const auto file = bake::bake(scene, pool, {.looks = looks}).value();
+        const auto baked = BakedScene::from_memory(file).value();
+        check_same(scene, baked);
         for (scene::MeshId i = 0; i < 2; ++i) {
-            CHECK(baked->mesh(i).look == looks[i]);
+            CHECK(baked.mesh(i).look == looks[i]);
             const auto cut = depth::ClusteredMesh::cut(scene.mesh(i).positions, scene.mesh(i).indices);
-            REQUIRE(baked->clusters(i) != nullptr);
-            CHECK(baked->clusters(i)->serialise() == cut->serialise());
+            REQUIRE(baked.clusters(i) != nullptr);
+            CHECK(baked.clusters(i)->serialise() == cut->serialise());
         }
-        const auto plain = bake::bake(scene, serial_executor(), {.looks = std::span(looks, 1), .clusters = false});
-        REQUIRE(plain);
-        const auto without = BakedScene::from_memory(*plain);
-        REQUIRE(without);
-        CHECK(without->mesh(0).look == looks[0]);
-        CHECK(without->mesh(1).look == MeshLook{});
-        CHECK(without->clusters(0) == nullptr);
+        const auto plain =
+            bake::bake(scene, serial_executor(), {.looks = std::span(looks, 1), .clusters = false}).value();
+        const auto without = BakedScene::from_memory(plain).value();
+        CHECK(without.mesh(0).look == looks[0]);
+        CHECK(without.mesh(1).look == MeshLook{});
+        CHECK(without.clusters(0) == nullptr);
         const std::array<MeshLook, 3> too_many{};
         CHECK(error_of(bake::bake(scene, pool, {.looks = too_many})).code == ErrorCode::invalid_argument);
     }
@@ -176,17 +162,19 @@ TEST_SUITE("bake/baked_scene") {
     TEST_CASE("a World takes a file's clusters as they are, and cuts nothing") {
         const scene::Scene scene = sample_scene(10);
         const auto file = bake::bake(scene);
-        const auto baked = BakedScene::from_memory(*file);
-        REQUIRE(baked);
+        const auto baked = BakedScene::from_memory(*file).value();
         World world;
-        for (scene::MeshId i = 0; i < baked->mesh_count(); ++i) {
+        for (scene::MeshId i = 0; i < baked.mesh_count(); ++i) {
             CAPTURE(i);
-            const bake::MeshView mesh = baked->mesh(i);
-            REQUIRE(baked->clusters(i) != nullptr);
-            const auto added = world.add_mesh(
-                {.positions = mesh.positions, .indices = mesh.indices, .clusters = true, .precut = baked->clusters(i)});
-            REQUIRE(added);
-            CHECK(world.clusters_of(*added)->serialise() == baked->clusters(i)->serialise());
+            const bake::MeshView mesh = baked.mesh(i);
+            REQUIRE(baked.clusters(i) != nullptr);
+            const auto added = world
+                                   .add_mesh({.positions = mesh.positions,
+                                              .indices = mesh.indices,
+                                              .clusters = true,
+                                              .precut = baked.clusters(i)})
+                                   .value();
+            CHECK(world.clusters_of(added)->serialise() == baked.clusters(i)->serialise());
         }
     }
 
@@ -199,14 +187,12 @@ TEST_SUITE("bake/baked_scene") {
             REQUIRE(scene.add_mesh(mesh, ""));
         }
         scene.update();
-        const auto file = bake::bake(scene);
-        REQUIRE(file);
-        const auto baked = BakedScene::from_memory(*file);
-        REQUIRE(baked);
-        CHECK(baked->clusters(0) != nullptr);
-        CHECK(baked->clusters(1) == nullptr);
-        REQUIRE(baked->clusters(2) != nullptr);
-        CHECK(baked->clusters(2)->bound().half_edges[0].x + baked->clusters(2)->bound().center.x >= 2.0f);
+        const auto file = bake::bake(scene).value();
+        const auto baked = BakedScene::from_memory(file).value();
+        CHECK(baked.clusters(0) != nullptr);
+        CHECK(baked.clusters(1) == nullptr);
+        REQUIRE(baked.clusters(2) != nullptr);
+        CHECK(baked.clusters(2)->bound().half_edges[0].x + baked.clusters(2)->bound().center.x >= 2.0f);
     }
 
     TEST_CASE("the same scene gives the same bytes, with any number of threads") {

@@ -83,19 +83,17 @@ TEST_SUITE("bake/container") {
 
     TEST_CASE("sections come back, by name and element size only") {
         const Vector<std::byte> file = sample_file();
-        const auto reader = Reader::open(file);
-        REQUIRE(reader);
-        const auto numbers = reader->section<std::uint32_t>("numbers");
-        REQUIRE(numbers);
-        CHECK(numbers->size() == 5);
-        CHECK((*numbers)[4] == 5);
-        CHECK(reinterpret_cast<std::uintptr_t>(numbers->data()) % kAlignment == 0);
-        REQUIRE(reader->section<char>("letters8"));
-        CHECK((*reader->section<char>("letters8"))[2] == 'c');
-        CHECK(reader->section<double>("nothing")->empty());
-        CHECK_FALSE(reader->section<std::uint64_t>("numbers"));
-        CHECK_FALSE(reader->section<char>("letters"));
-        CHECK(error_of(reader->section<char>("letters")).message.find("missing") != std::string::npos);
+        const auto reader = Reader::open(file).value();
+        const auto numbers = reader.section<std::uint32_t>("numbers").value();
+        CHECK(numbers.size() == 5);
+        CHECK(numbers[4] == 5);
+        CHECK(reinterpret_cast<std::uintptr_t>(numbers.data()) % kAlignment == 0);
+        REQUIRE(reader.section<char>("letters8"));
+        CHECK((*reader.section<char>("letters8"))[2] == 'c');
+        CHECK(reader.section<double>("nothing")->empty());
+        CHECK_FALSE(reader.section<std::uint64_t>("numbers"));
+        CHECK_FALSE(reader.section<char>("letters"));
+        CHECK(error_of(reader.section<char>("letters")).message.find("missing") != std::string::npos);
     }
 
     TEST_CASE("a file of no sections is a file") {

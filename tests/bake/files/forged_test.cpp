@@ -51,10 +51,9 @@ Vector<std::byte> small_scene() {
     REQUIRE(scene.add_instance(*root, 0));
     REQUIRE(scene.add_instance(*child, 1));
     scene.update();
-    auto file = bake::bake(scene);
-    REQUIRE(file);
-    REQUIRE(BakedScene::from_memory(*file));
-    return std::move(*file);
+    auto file = bake::bake(scene).value();
+    REQUIRE(BakedScene::from_memory(file));
+    return file;
 }
 
 // Two nodes; of three kinds one is empty.
@@ -83,9 +82,7 @@ Vector<std::byte> with_occluders(const BakedOccluders& occluders) {
     REQUIRE(scene.add_node(scene::kNone, {}, ~0u));
     REQUIRE(scene.add_node(scene::kNone, {}, ~0u));
     scene.update();
-    auto file = bake::bake(scene, serial_executor(), {.occluders = &occluders});
-    REQUIRE(file);
-    return std::move(*file);
+    return bake::bake(scene, serial_executor(), {.occluders = &occluders}).value();
 }
 
 void check_scene_refused(const Vector<std::byte>& file, std::string_view why) {
@@ -210,30 +207,29 @@ TEST_SUITE("bake/forged") {
 
     TEST_CASE("occluders come back as they were, also those of an engine's own, and old files have none") {
         const Vector<std::byte> file = with_occluders(three_kinds());
-        const auto baked = BakedScene::from_memory(file);
-        REQUIRE(baked);
-        REQUIRE(baked->occluders());
-        REQUIRE(baked->occluders()->kinds.size() == 3);
-        CHECK(baked->occluders()->kinds[0].size() == 2);
-        CHECK(baked->occluders()->kinds[1].empty());
-        const occlude::FoundOccluder& box = baked->occluders()->kinds[0][0];
+        const auto baked = BakedScene::from_memory(file).value();
+        REQUIRE(baked.occluders());
+        REQUIRE(baked.occluders()->kinds.size() == 3);
+        CHECK(baked.occluders()->kinds[0].size() == 2);
+        CHECK(baked.occluders()->kinds[1].empty());
+        const occlude::FoundOccluder& box = baked.occluders()->kinds[0][0];
         CHECK(box.kind == occlude::OccluderKind::walled);
         CHECK(box.box.half_extents == glm::vec3(1, 2, 3));
         CHECK(box.eyes_within.max.y == 5.0);
         CHECK(box.eyes_within.min.y == -std::numeric_limits<double>::infinity());
         CHECK(box.piece_bounds.is_empty());
-        const occlude::FoundOccluder& body = baked->occluders()->kinds[0][1];
+        const occlude::FoundOccluder& body = baked.occluders()->kinds[0][1];
         CHECK(body.mean_shadow == 1.5);
         CHECK(body.gain == 2.5);
         CHECK(body.edges == 30);
         CHECK(body.piece_bounds.min == glm::dvec3(-2.0));
-        const occlude::FoundOccluder& patch = baked->occluders()->kinds[2][0];
+        const occlude::FoundOccluder& patch = baked.occluders()->kinds[2][0];
         CHECK(patch.surface.positions.size() == 3);
         CHECK(patch.surface.indices == Vector<std::uint32_t>{2, 1, 0});
         CHECK(patch.sides == occlude::Sides::front);
-        REQUIRE(baked->occluders()->nodes.size() == 1);
-        CHECK(baked->occluders()->nodes[0].node == 1);
-        CHECK(baked->occluders()->nodes[0].kind == 2);
+        REQUIRE(baked.occluders()->nodes.size() == 1);
+        CHECK(baked.occluders()->nodes[0].node == 1);
+        CHECK(baked.occluders()->nodes[0].kind == 2);
         CHECK_FALSE(BakedScene::from_memory(small_scene())->occluders());
     }
 
@@ -392,11 +388,10 @@ TEST_SUITE("bake/forged") {
     TEST_CASE("occluders of several nodes are baked, one with points and no triangles is refused before") {
         BakedOccluders occluders = three_kinds();
         occluders.nodes = {{0, 0}, {1, 2}};
-        const auto baked = BakedScene::from_memory(with_occluders(occluders));
-        REQUIRE(baked);
-        REQUIRE(baked->occluders()->nodes.size() == 2);
-        CHECK(baked->occluders()->nodes[0].node == 0);
-        CHECK(baked->occluders()->nodes[1].kind == 2);
+        const auto baked = BakedScene::from_memory(with_occluders(occluders)).value();
+        REQUIRE(baked.occluders()->nodes.size() == 2);
+        CHECK(baked.occluders()->nodes[0].node == 0);
+        CHECK(baked.occluders()->nodes[1].kind == 2);
         occluders.kinds[0][1].surface.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
         scene::Scene scene;
         REQUIRE(scene.add_node(scene::kNone, {}, ~0u));

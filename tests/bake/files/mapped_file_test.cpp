@@ -43,10 +43,9 @@ TEST_SUITE("bake/mapped_file") {
         CHECK(MappedFile::open(empty.path())->bytes().empty());
         const std::vector<std::byte> contents(100'000, std::byte{7});
         const crofton::bake_test::TemporaryFile file(contents);
-        auto mapped = MappedFile::open(file.path());
-        REQUIRE(mapped);
-        MappedFile moved = std::move(*mapped);
-        CHECK(mapped->bytes().empty());
+        auto mapped = MappedFile::open(file.path()).value();
+        MappedFile moved = std::move(mapped);
+        CHECK(mapped.bytes().empty());
         MappedFile again = std::move(moved);
         moved = std::move(again);
         REQUIRE(moved.bytes().size() == contents.size());
@@ -56,13 +55,12 @@ TEST_SUITE("bake/mapped_file") {
     TEST_CASE("a file read into memory outlives a cut of the file") {
         const std::vector<std::byte> contents(100'000, std::byte{7});
         const crofton::bake_test::TemporaryFile file(contents);
-        auto read = MappedFile::open(file.path(), {.access = crofton::bake::FileAccess::read});
-        REQUIRE(read);
+        auto read = MappedFile::open(file.path(), {.access = crofton::bake::FileAccess::read}).value();
         std::filesystem::resize_file(file.path(), 10);
-        REQUIRE(read->bytes().size() == contents.size());
-        CHECK(std::equal(contents.begin(), contents.end(), read->bytes().begin()));
-        CHECK(reinterpret_cast<std::uintptr_t>(read->bytes().data()) % 64 == 0);
-        const MappedFile moved = std::move(*read);
+        REQUIRE(read.bytes().size() == contents.size());
+        CHECK(std::equal(contents.begin(), contents.end(), read.bytes().begin()));
+        CHECK(reinterpret_cast<std::uintptr_t>(read.bytes().data()) % 64 == 0);
+        const MappedFile moved = std::move(read);
         CHECK(moved.bytes()[99'999] == std::byte{7});
     }
 
@@ -70,15 +68,14 @@ TEST_SUITE("bake/mapped_file") {
         const std::vector<std::byte> contents(100'000, std::byte{7});
         for (const auto access : {crofton::bake::FileAccess::map, crofton::bake::FileAccess::read}) {
             const crofton::bake_test::TemporaryFile file(contents);
-            const auto opened = MappedFile::open(file.path(), {.access = access});
-            REQUIRE(opened);
+            const auto opened = MappedFile::open(file.path(), {.access = access}).value();
             std::filesystem::resize_file(file.path(), 0);
             const pid_t child = fork();
             REQUIRE(child >= 0);
             if (child == 0) {
                 std::signal(SIGBUS, SIG_DFL);
                 std::signal(SIGSEGV, SIG_DFL);
-                _exit(opened->bytes()[50'000] == std::byte{7} ? 0 : 1);
+                _exit(opened.bytes()[50'000] == std::byte{7} ? 0 : 1);
             }
             int status = 0;
             REQUIRE(waitpid(child, &status, 0) == child);

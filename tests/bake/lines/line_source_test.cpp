@@ -24,23 +24,22 @@ shapes::Shape flat_scene() {
 TEST_SUITE("lines/line_source") {
     TEST_CASE("every method crosses a surface 2·N·S/F times on average") {
         const shapes::Shape shape = flat_scene();
-        const auto tracer = LineTracer::build(shape.mesh);
-        REQUIRE(tracer.has_value());
+        const auto tracer = LineTracer::build(shape.mesh).value();
         for (const LineMethod method : kMethods) {
             // By sixteen independent samples: the lines of one bundle are not independent of each other.
             double sum = 0.0, squares = 0.0;
             constexpr int kRepeats = 16;
             for (int r = 0; r < kRepeats; ++r) {
-                const LineSource source(tracer->bounds(), method, 3 + static_cast<std::uint64_t>(r));
+                const LineSource source(tracer.bounds(), method, 3 + static_cast<std::uint64_t>(r));
                 const double share =
-                    visibility_complexity(*tracer, source, 10).mean_crossings * source.surface_area() / 208.0;
+                    visibility_complexity(tracer, source, 10).mean_crossings * source.surface_area() / 208.0;
                 sum += share;
                 squares += share * share;
             }
             const double mean = sum / kRepeats, error = std::sqrt((squares / kRepeats - mean * mean) / (kRepeats - 1));
             CHECK(error < 0.1);
             CHECK(std::abs(mean - 1.0) < 4.0 * error);
-            const auto seen = visibility_complexity(*tracer, LineSource(tracer->bounds(), method, 3), 100);
+            const auto seen = visibility_complexity(tracer, LineSource(tracer.bounds(), method, 3), 100);
             CHECK(std::abs(static_cast<double>(seen.lines) - 102'400.0) <
                   (method == LineMethod::bundles ? 1500.0 : 0.5));
         }
@@ -48,10 +47,9 @@ TEST_SUITE("lines/line_source") {
 
     TEST_CASE("on a flat scene the walls of its box waste fewer lines than its sphere") {
         const shapes::Shape shape = flat_scene();
-        const auto tracer = LineTracer::build(shape.mesh);
-        REQUIRE(tracer.has_value());
+        const auto tracer = LineTracer::build(shape.mesh).value();
         const auto wasted = [&](LineMethod method) {
-            return visibility_complexity(*tracer, LineSource(tracer->bounds(), method, 1), 50).wasted;
+            return visibility_complexity(tracer, LineSource(tracer.bounds(), method, 1), 50).wasted;
         };
         CHECK(wasted(LineMethod::walls) < 0.2);
         CHECK(wasted(LineMethod::disc) > 0.6);

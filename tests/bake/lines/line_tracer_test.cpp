@@ -46,11 +46,10 @@ TEST_SUITE("lines/line_tracer") {
         TriangleMesh mesh;
         mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
         for (int i = 0; i < 100'000; ++i) mesh.indices.insert(mesh.indices.end(), {0, 1, 2});
-        const auto tracer = LineTracer::build(mesh);
-        REQUIRE(tracer.has_value());
+        const auto tracer = LineTracer::build(mesh).value();
         LineHits hits;
         const Line line{{0.2, 0.2, -5.0}, {0.0, 0.0, 1.0}};
-        tracer->all_hits({&line, 1}, hits);
+        tracer.all_hits({&line, 1}, hits);
         REQUIRE(hits.hits.size() == 100'000);
         CHECK(std::is_sorted(hits.hits.begin(), hits.hits.end(),
                              [](const Hit& a, const Hit& b) { return a.triangle < b.triangle; }));
@@ -59,13 +58,12 @@ TEST_SUITE("lines/line_tracer") {
     TEST_CASE("lines along an axis and in a face's plane do not break the boxes' arithmetic") {
         shapes::Shape room;
         room.room({0, 0, 0}, {2, 2, 2}, 0);
-        const auto tracer = LineTracer::build(room.mesh);
-        REQUIRE(tracer.has_value());
+        const auto tracer = LineTracer::build(room.mesh).value();
         for (int axis = 0; axis < 3; ++axis) {
             Line line{{0.7, 0.9, 0.6}, glm::dvec3(0.0)};
             line.direction[axis] = 1.0;
             LineHits hits;
-            tracer->all_hits({&line, 1}, hits);
+            tracer.all_hits({&line, 1}, hits);
             REQUIRE(hits.hits.size() == 2);
             CHECK_FALSE(hits.hits[0].front);  // it enters through the back of a wall that looks inward
             CHECK(hits.hits[1].front);
@@ -76,14 +74,13 @@ TEST_SUITE("lines/line_tracer") {
     TEST_CASE("all crossings agree with brute force in double on random triangles of several sizes") {
         for (const float size : {0.02f, 0.2f, 1.5f}) {
             const TriangleMesh mesh = shapes::soup(3000, size, 7);
-            const auto tracer = LineTracer::build(mesh);
-            REQUIRE(tracer.has_value());
+            const auto tracer = LineTracer::build(mesh).value();
             const sampling::UnitPoints points(3);
             std::vector<Line> lines;
             for (std::uint64_t i = 0; i < 300; ++i)
                 lines.push_back(sampling::line_through_disc({glm::dvec3(0.0), 2.0}, points.at<4>(i)));
             LineHits hits;
-            tracer->all_hits(lines, hits);
+            tracer.all_hits(lines, hits);
             REQUIRE(hits.ends.size() == lines.size());
             std::size_t differences = 0, total = 0;
             std::uint32_t begin = 0;
@@ -114,8 +111,7 @@ TEST_SUITE("lines/line_tracer") {
         sampling::Random random(17);
         for (const float size : {0.03f, 0.3f, 1.5f}) {
             const TriangleMesh mesh = shapes::soup(3000, size, 8);
-            const auto tracer = LineTracer::build(mesh);
-            REQUIRE(tracer.has_value());
+            const auto tracer = LineTracer::build(mesh).value();
             std::size_t crossings = 0;
             for (int round = 0; round < 60; ++round) {
                 // From parallel lines at nearly one place to lines that have nothing in common, some from far away and
@@ -135,10 +131,10 @@ TEST_SUITE("lines/line_tracer") {
                         {at + apart * sampling::ball_point(random.point<3>()) - far * direction, direction});
                 }
                 LineHits together, alone;
-                tracer->all_hits(lines, together);
+                tracer.all_hits(lines, together);
                 REQUIRE(together.ends.size() == 64);
                 for (std::size_t i = 0, first = 0; i < 64; first = together.ends[i], ++i) {
-                    tracer->all_hits({&lines[i], 1}, alone);
+                    tracer.all_hits({&lines[i], 1}, alone);
                     REQUIRE(together.ends[i] - first == alone.hits.size());
                     for (std::size_t h = 0; h < alone.hits.size(); ++h) {
                         REQUIRE(together.hits[first + h].t == alone.hits[h].t);
@@ -153,8 +149,7 @@ TEST_SUITE("lines/line_tracer") {
     }
 
     TEST_CASE("lines that all look the same way along each axis have the crossings they have among others") {
-        const auto tracer = LineTracer::build(shapes::soup(3000, 0.3f, 10));
-        REQUIRE(tracer.has_value());
+        const auto tracer = LineTracer::build(shapes::soup(3000, 0.3f, 10)).value();
         for (std::int64_t rest = hwy::SupportedTargets(); rest != 0; rest &= rest - 1) {
             hwy::SetSupportedTargetsForTest(rest & -rest);
             sampling::Random random(19);
@@ -168,9 +163,9 @@ TEST_SUITE("lines/line_tracer") {
                         lines.push_back({sampling::ball_point(random.point<3>()), direction});
                     }
                     LineHits same, mixed;
-                    tracer->all_hits(lines, same);
+                    tracer.all_hits(lines, same);
                     lines.push_back({glm::dvec3(0.0), -lines[0].direction});
-                    tracer->all_hits(lines, mixed);
+                    tracer.all_hits(lines, mixed);
                     CHECK(same.hits.size() > 5 * count);
                     REQUIRE(mixed.hits.size() >= same.hits.size());
                     for (std::size_t i = 0; i < count; ++i) REQUIRE(same.ends[i] == mixed.ends[i]);
@@ -185,8 +180,7 @@ TEST_SUITE("lines/line_tracer") {
 
     TEST_CASE("any number of lines in one call, more than go together too, have the bits they have alone") {
         sampling::Random random(18);
-        const auto tracer = LineTracer::build(shapes::soup(3000, 0.3f, 9));
-        REQUIRE(tracer.has_value());
+        const auto tracer = LineTracer::build(shapes::soup(3000, 0.3f, 9)).value();
         std::vector<Line> lines;
         std::vector<LineHits> alone;
         std::size_t most = 0;
@@ -196,13 +190,13 @@ TEST_SUITE("lines/line_tracer") {
                 lines.push_back(lines.back());
             else
                 lines.push_back({sampling::ball_point(random.point<3>()), sampling::direction(random.point<2>())});
-            tracer->all_hits({&lines.back(), 1}, alone.emplace_back());
+            tracer.all_hits({&lines.back(), 1}, alone.emplace_back());
             most = std::max(most, alone.back().hits.size());
         }
         CHECK(most > 30);
         LineHits together;
         for (const std::size_t count : {0u, 1u, 2u, 3u, 4u, 5u, 7u, 8u, 9u, 33u, 4095u, 4096u, 4097u, 9000u}) {
-            tracer->all_hits({lines.data(), count}, together);
+            tracer.all_hits({lines.data(), count}, together);
             REQUIRE(together.ends.size() == count);
             for (std::size_t i = 0, first = 0; i < count; first = together.ends[i], ++i) {
                 REQUIRE(together.ends[i] - first == alone[i].hits.size());
@@ -219,35 +213,33 @@ TEST_SUITE("lines/line_tracer") {
         TriangleMesh mesh;
         mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
         for (int i = 0; i < 900; ++i) mesh.indices.insert(mesh.indices.end(), {0, 1, 2});
-        const auto tracer = LineTracer::build(mesh);
-        REQUIRE(tracer.has_value());
+        const auto tracer = LineTracer::build(mesh).value();
         const std::vector<Line> lines(130, Line{{0.2, 0.2, -5.0}, {0.0, 0.0, 1.0}});
         LineHits hits;
-        tracer->all_hits(lines, hits);
+        tracer.all_hits(lines, hits);
         REQUIRE(hits.ends.size() == 130);
         for (std::size_t i = 0; i < 130; ++i) CHECK(hits.ends[i] == 900 * (i + 1));
     }
 
     TEST_CASE("the first crossing is the least positive one of all, the ray's own triangle left out") {
         const TriangleMesh mesh = shapes::soup(2000, 0.3f, 9);
-        const auto tracer = LineTracer::build(mesh);
-        REQUIRE(tracer.has_value());
+        const auto tracer = LineTracer::build(mesh).value();
         const sampling::UnitPoints points(5);
         std::size_t compared = 0;
         for (std::uint64_t i = 0; i < 500; ++i) {
             Line line = sampling::line_through_disc({glm::dvec3(0.0), 1.0}, points.at<4>(i));
             LineHits all;
-            tracer->all_hits({&line, 1}, all);
+            tracer.all_hits({&line, 1}, all);
             std::vector<Hit> ahead;
             for (const Hit& hit : all.hits)
                 if (hit.t > 0.0f) ahead.push_back(hit);
             FirstHitQuery ray{line, Hit::kNothing};
             Hit first;
-            tracer->first_hits({&ray, 1}, {&first, 1});
+            tracer.first_hits({&ray, 1}, {&first, 1});
             CHECK(first.triangle == (ahead.empty() ? Hit::kNothing : ahead[0].triangle));
             if (ahead.size() < 2) continue;
             ray.skip = ahead[0].triangle;
-            tracer->first_hits({&ray, 1}, {&first, 1});
+            tracer.first_hits({&ray, 1}, {&first, 1});
             CHECK(first.triangle == ahead[1].triangle);
             ++compared;
         }

@@ -27,16 +27,15 @@ TEST_SUITE("triangulate/local_improvement") {
             REQUIRE(domain.build(p).has_value());
             LocalImprovement improvement;
             for (const Method method : {Method::ear, Method::delaunay}) {
-                const auto start = triangulate::triangulate(p, {.method = method});
-                REQUIRE(start.has_value());
-                REQUIRE(improvement.start_from_triangles(domain, start->triangles));
+                const auto start = triangulate::triangulate(p, {.method = method}).value();
+                REQUIRE(improvement.start_from_triangles(domain, start.triangles));
                 ++taken;
-                CHECK(improvement.weight() * domain.scale() == doctest::Approx(start->weight).epsilon(1e-12));
+                CHECK(improvement.weight() * domain.scale() == doctest::Approx(start.weight).epsilon(1e-12));
                 const TriangulateOptions unlimited;
                 Watch watch(unlimited);
                 improvement.run(watch);
-                CHECK(improvement.weight() * domain.scale() <= start->weight * (1.0 + 1e-12));
-                lighter += improvement.weight() * domain.scale() < 0.999 * start->weight;
+                CHECK(improvement.weight() * domain.scale() <= start.weight * (1.0 + 1e-12));
+                lighter += improvement.weight() * domain.scale() < 0.999 * start.weight;
                 Vector<std::array<std::uint32_t, 3>> triangles;
                 improvement.write(triangles);
                 CHECK(oracle::check_triangulation(p, triangles) == "");

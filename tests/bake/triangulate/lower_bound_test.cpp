@@ -54,12 +54,11 @@ TEST_SUITE("triangulate/lower bound") {
         for (const int count : {2, 3, 7, 40, 300})
             for (const TriangulateOptions& options : {TriangulateOptions{.work = 0}, TriangulateOptions{.seconds = 0.0},
                                                       TriangulateOptions{.bytes = 100}}) {
-                const auto result = triangulate::triangulate(strip(count), options);
-                REQUIRE(result.has_value());
+                const auto result = triangulate::triangulate(strip(count), options).value();
                 const double minimum = 5.0 * (2.0 * count - 3.0);
-                CHECK(result->weight == doctest::Approx(minimum).epsilon(1e-12));
-                CHECK(lower_bound_of(*result) <= minimum);
-                CHECK(result->gap < 1e-9);
+                CHECK(result.weight == doctest::Approx(minimum).epsilon(1e-12));
+                CHECK(lower_bound_of(result) <= minimum);
+                CHECK(result.gap < 1e-9);
             }
     }
 
@@ -68,10 +67,10 @@ TEST_SUITE("triangulate/lower bound") {
             const double minimum = 5.0 * (2.0 * count - 3.0);
             int tight = 0;
             for (double work = 1.0; work < 1e6; work *= 1.1) {
-                const auto result = triangulate::triangulate(strip(count), {.work = static_cast<std::uint64_t>(work)});
-                REQUIRE(result.has_value());
-                CHECK(lower_bound_of(*result) <= minimum);
-                tight += !result->optimal && lower_bound_of(*result) > minimum * (1.0 - 1e-9);
+                const auto result =
+                    triangulate::triangulate(strip(count), {.work = static_cast<std::uint64_t>(work)}).value();
+                CHECK(lower_bound_of(result) <= minimum);
+                tight += !result.optimal && lower_bound_of(result) > minimum * (1.0 - 1e-9);
             }
             CHECK(tight > 50);
         }
@@ -100,13 +99,11 @@ TEST_SUITE("triangulate/lower bound") {
         for (int trial = 0; trial < 10; ++trial) {
             CAPTURE(trial);
             const Polygon p = wavy(random, 40 + 16 * trial, trial % 4);
-            const auto minimum = triangulate::triangulate(p, {.work = TriangulateOptions::kUnlimitedWork});
-            REQUIRE(minimum.has_value());
-            REQUIRE(minimum->optimal);
+            const auto minimum = triangulate::triangulate(p, {.work = TriangulateOptions::kUnlimitedWork}).value();
+            REQUIRE(minimum.optimal);
             const auto check = [&](const TriangulateOptions& options) {
-                const auto result = triangulate::triangulate(p, options);
-                REQUIRE(result.has_value());
-                CHECK(lower_bound_of(*result) <= minimum->weight * (1.0 + 1e-14));
+                const auto result = triangulate::triangulate(p, options).value();
+                CHECK(lower_bound_of(result) <= minimum.weight * (1.0 + 1e-14));
             };
             check({.seconds = 0.0});
             check({.bytes = 100});
@@ -125,15 +122,13 @@ TEST_SUITE("triangulate/lower bound") {
         p.points.emplace_back(2.0 * kSlots - 1.0, -1.0);
         p.points.emplace_back(0.0, -1.0);
         p.ring_ends = {static_cast<std::uint32_t>(p.points.size())};
-        const auto minimum = triangulate::triangulate(p, {});
-        REQUIRE(minimum.has_value());
-        REQUIRE(minimum->optimal);
+        const auto minimum = triangulate::triangulate(p, {}).value();
+        REQUIRE(minimum.optimal);
         for (const std::uint64_t work : {std::uint64_t{0}, std::uint64_t{100'000}}) {
-            const auto result = triangulate::triangulate(p, {.work = work});
-            REQUIRE(result.has_value());
-            MESSAGE("gap " << result->gap << " with work " << work);
-            CHECK(lower_bound_of(*result) <= minimum->weight * (1.0 + 1e-14));
-            CHECK(result->gap < 0.6);
+            const auto result = triangulate::triangulate(p, {.work = work}).value();
+            MESSAGE("gap " << result.gap << " with work " << work);
+            CHECK(lower_bound_of(result) <= minimum.weight * (1.0 + 1e-14));
+            CHECK(result.gap < 0.6);
         }
     }
 
@@ -146,10 +141,9 @@ TEST_SUITE("triangulate/lower bound") {
             const double minimum = 8.0 * (count - 2) + 10.0 * (count - 1);
             int tight = 0;
             for (double work = 1.0; work < 1e6; work *= 1.05) {
-                const auto result = triangulate::triangulate(p, {.work = static_cast<std::uint64_t>(work)});
-                REQUIRE(result.has_value());
-                CHECK(lower_bound_of(*result) <= minimum * (1.0 + 1e-15));
-                tight += !result->optimal && lower_bound_of(*result) > minimum * (1.0 - 1e-9);
+                const auto result = triangulate::triangulate(p, {.work = static_cast<std::uint64_t>(work)}).value();
+                CHECK(lower_bound_of(result) <= minimum * (1.0 + 1e-15));
+                tight += !result.optimal && lower_bound_of(result) > minimum * (1.0 - 1e-9);
             }
             CHECK(tight > 4);
         }
@@ -164,13 +158,11 @@ TEST_SUITE("triangulate/lower bound") {
         p.ring_ends = {24};
         p.points.insert(p.points.end(), {{30.0, 4.0}, {33.0, 5.0}, {36.0, 4.0}});
         p.ring_ends.push_back(27);
-        const auto minimum = triangulate::triangulate(p, {});
-        REQUIRE(minimum.has_value());
-        REQUIRE(minimum->optimal);
+        const auto minimum = triangulate::triangulate(p, {}).value();
+        REQUIRE(minimum.optimal);
         for (std::uint64_t work = 0; work < 3000; work += 1 + work / 8) {
-            const auto result = triangulate::triangulate(p, {.work = work});
-            REQUIRE(result.has_value());
-            CHECK(lower_bound_of(*result) <= minimum->weight * (1.0 + 1e-15));
+            const auto result = triangulate::triangulate(p, {.work = work}).value();
+            CHECK(lower_bound_of(result) <= minimum.weight * (1.0 + 1e-15));
         }
     }
 }

@@ -41,10 +41,9 @@ bool is_valid(const Polygon& polygon) {
 
 TEST_SUITE("triangulate/minimum_weight") {
     TEST_CASE("a quadrilateral takes its shorter diagonal") {
-        const auto result = triangulate::triangulate(polygon({{{0, 0}, {4, -1}, {8, 0}, {4, 1}}}));
-        REQUIRE(result.has_value());
-        CHECK(result->weight == 2.0);
-        CHECK(result->optimal);
+        const auto result = triangulate::triangulate(polygon({{{0, 0}, {4, -1}, {8, 0}, {4, 1}}})).value();
+        CHECK(result.weight == 2.0);
+        CHECK(result.optimal);
     }
 
     TEST_CASE("a ring that goes round twice is not convex, though each corner turns to one side") {
@@ -52,10 +51,9 @@ TEST_SUITE("triangulate/minimum_weight") {
         const Polygon p = polygon({{{-0.125, 0}, {0, 5}, {5, -0.125}, {0, 0}, {0, 1}, {1.5, 0}}});
         for (const auto method :
              {triangulate::Method::ear, triangulate::Method::delaunay, triangulate::Method::minimum_weight}) {
-            const auto result = triangulate::triangulate(p, {.method = method});
-            REQUIRE(result.has_value());
-            CHECK(result->triangles.size() == 5);
-            CHECK(oracle::check_triangulation(p, result->triangles, true) == "");
+            const auto result = triangulate::triangulate(p, {.method = method}).value();
+            CHECK(result.triangles.size() == 5);
+            CHECK(oracle::check_triangulation(p, result.triangles, true) == "");
         }
     }
 
@@ -67,9 +65,8 @@ TEST_SUITE("triangulate/minimum_weight") {
             best = std::min(
                 best, glm::distance(p[corner], p[(corner + 2) % 5]) + glm::distance(p[corner], p[(corner + 3) % 5]));
         }
-        const auto result = triangulate::triangulate(polygon({{p[0], p[1], p[2], p[3], p[4]}}));
-        REQUIRE(result.has_value());
-        CHECK(result->weight == doctest::Approx(best).epsilon(1e-15));
+        const auto result = triangulate::triangulate(polygon({{p[0], p[1], p[2], p[3], p[4]}})).value();
+        CHECK(result.weight == doctest::Approx(best).epsilon(1e-15));
     }
 
     TEST_CASE("regular polygons, where everything ties") {
@@ -169,14 +166,12 @@ TEST_SUITE("triangulate/minimum_weight") {
                 const double angle = 6.283185307179586 * (hole + 0.3 * unit(random)) / (2 + trial % 5);
                 add_star(p, random, 4.5 * glm::dvec2(std::cos(angle), std::sin(angle)), 0.1, 1.0, 3 + trial % 3, 0.0);
             }
-            const auto first = triangulate::triangulate(p, kUnhurried);
-            REQUIRE(first.has_value());
+            const auto first = triangulate::triangulate(p, kUnhurried).value();
             for (int turn = 0; turn < 3; ++turn) {
                 for (auto& q : p.points) q = glm::dvec2(-q.y, q.x);
-                const auto turned = triangulate::triangulate(p, kUnhurried);
-                REQUIRE(turned.has_value());
-                CHECK(turned->optimal);
-                CHECK(std::fabs(turned->weight - first->weight) <= 1e-12 * first->weight);
+                const auto turned = triangulate::triangulate(p, kUnhurried).value();
+                CHECK(turned.optimal);
+                CHECK(std::fabs(turned.weight - first.weight) <= 1e-12 * first.weight);
             }
         }
     }
@@ -202,14 +197,13 @@ TEST_SUITE("triangulate/minimum_weight") {
             for (const auto& options :
                  {triangulate::TriangulateOptions{.work = 0}, triangulate::TriangulateOptions{.seconds = 0.0},
                   triangulate::TriangulateOptions{.bytes = 1000}}) {
-                const auto result = triangulate::triangulate(p, options);
-                REQUIRE(result.has_value());
-                CHECK(oracle::check_triangulation(p, result->triangles) == "");
-                CHECK_FALSE(result->optimal);
-                CHECK(result->weight <= std::min(ear->weight, delaunay->weight) * (1.0 + 1e-14));
-                CHECK(result->weight >= minimum->weight * (1.0 - 1e-12));
-                CHECK(result->weight <= minimum->weight * (1.0 + result->gap));
-                CHECK(std::isfinite(result->gap));
+                const auto result = triangulate::triangulate(p, options).value();
+                CHECK(oracle::check_triangulation(p, result.triangles) == "");
+                CHECK_FALSE(result.optimal);
+                CHECK(result.weight <= std::min(ear->weight, delaunay->weight) * (1.0 + 1e-14));
+                CHECK(result.weight >= minimum->weight * (1.0 - 1e-12));
+                CHECK(result.weight <= minimum->weight * (1.0 + result.gap));
+                CHECK(std::isfinite(result.gap));
             }
         }
     }
@@ -239,23 +233,21 @@ TEST_SUITE("triangulate/minimum_weight") {
             const double angle = 6.283185307179586 * hole / 8;
             add_star(p, random, 5.0 * glm::dvec2(std::cos(angle), std::sin(angle)), 0.8, 1.0, 40, 0.0);
         }
-        const auto minimum = triangulate::triangulate(p, kUnhurried);
-        REQUIRE(minimum.has_value());
-        REQUIRE(minimum->optimal);
+        const auto minimum = triangulate::triangulate(p, kUnhurried).value();
+        REQUIRE(minimum.optimal);
         triangulate::Triangulator warm;
         triangulate::Triangulation again;
         int limited = 0, proven = 0;
         for (std::uint64_t work = 1; work < 100'000'000; work += work / 2 + 1) {
-            const auto result = triangulate::triangulate(p, {.work = work});
-            REQUIRE(result.has_value());
+            const auto result = triangulate::triangulate(p, {.work = work}).value();
             REQUIRE(warm.triangulate(p, {.work = work}, again).has_value());
-            CHECK(again.triangles == result->triangles);
-            CHECK(again.gap == result->gap);
-            (result->optimal ? proven : limited) += 1;
-            CHECK(oracle::check_triangulation(p, result->triangles) == "");
-            CHECK(result->weight >= minimum->weight * (1.0 - 1e-12));
-            CHECK(result->weight <= minimum->weight * (1.0 + result->gap) * (1.0 + 1e-12));
-            CHECK(result->optimal == (result->gap == 0.0));
+            CHECK(again.triangles == result.triangles);
+            CHECK(again.gap == result.gap);
+            (result.optimal ? proven : limited) += 1;
+            CHECK(oracle::check_triangulation(p, result.triangles) == "");
+            CHECK(result.weight >= minimum.weight * (1.0 - 1e-12));
+            CHECK(result.weight <= minimum.weight * (1.0 + result.gap) * (1.0 + 1e-12));
+            CHECK(result.optimal == (result.gap == 0.0));
         }
         CHECK(limited > 10);
         CHECK(proven > 3);
@@ -308,18 +300,16 @@ TEST_SUITE("triangulate/minimum_weight") {
             const double angle = 6.283185307179586 * hole / 12;
             add_star(p, random, 5.0 * glm::dvec2(std::cos(angle), std::sin(angle)), 0.8, 1.0, 60, 0.0);
         }
-        const auto minimum = triangulate::triangulate(p, kUnhurried);
-        REQUIRE(minimum.has_value());
-        REQUIRE(minimum->optimal);
+        const auto minimum = triangulate::triangulate(p, kUnhurried).value();
+        REQUIRE(minimum.optimal);
         int limited = 0;
         for (double seconds = 1e-5; seconds < 2.0; seconds *= 1.5) {
-            const auto result = triangulate::triangulate(p, {.seconds = seconds});
-            REQUIRE(result.has_value());
-            limited += !result->optimal;
-            CHECK(oracle::check_triangulation(p, result->triangles) == "");
-            CHECK(result->weight >= minimum->weight * (1.0 - 1e-12));
-            CHECK(result->weight <= minimum->weight * (1.0 + result->gap) * (1.0 + 1e-12));
-            CHECK(result->optimal == (result->gap == 0.0));
+            const auto result = triangulate::triangulate(p, {.seconds = seconds}).value();
+            limited += !result.optimal;
+            CHECK(oracle::check_triangulation(p, result.triangles) == "");
+            CHECK(result.weight >= minimum.weight * (1.0 - 1e-12));
+            CHECK(result.weight <= minimum.weight * (1.0 + result.gap) * (1.0 + 1e-12));
+            CHECK(result.optimal == (result.gap == 0.0));
         }
         CHECK(limited > 0);
     }

@@ -250,10 +250,9 @@ TEST_SUITE("triangulate/planar_patches") {
         mesh.positions = {{4, 0.5f, 0}, {9, 0, 0}, {9, 1, 0}, {7, 1, 0}, {3, 1, 0},
                           {0, 1, 0},    {0, 0, 0}, {2, 0, 0}, {6, 0, 0}, {9, 0, 0}};
         for (std::uint32_t i = 1; i < 9; ++i) mesh.indices.insert(mesh.indices.end(), {0, i, i + 1});
-        const auto report = retriangulate_planar_patches(mesh);
-        REQUIRE(report.has_value());
-        CHECK(report->patches == 1);
-        CHECK(report->improved == 1);
+        const auto report = retriangulate_planar_patches(mesh).value();
+        CHECK(report.patches == 1);
+        CHECK(report.improved == 1);
         std::set<std::uint32_t> used;
         for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
             glm::vec3 middle(0.0f);
@@ -275,9 +274,8 @@ TEST_SUITE("triangulate/planar_patches") {
             mesh.positions = {{0, 0, 0}, {8, 0, 0}, {8, 8, 0}, {4, 8, 0}, {4, 3, 0}, {4, 8, 0}, {0, 8, 0}};
             for (std::size_t t = 0; t < 5; ++t)
                 for (const std::uint32_t i : triangles[(first + t) % 5]) mesh.indices.push_back(i);
-            const auto report = retriangulate_planar_patches(mesh);
-            REQUIRE(report.has_value());
-            CHECK(report->improved == 1);
+            const auto report = retriangulate_planar_patches(mesh).value();
+            CHECK(report.improved == 1);
             CHECK(std::set<std::uint32_t>(mesh.indices.begin(), mesh.indices.end()).size() == 7);
             for (std::size_t t = 0; t < mesh.indices.size(); t += 3) {
                 const std::uint32_t* const corners = &mesh.indices[t];
@@ -298,14 +296,13 @@ TEST_SUITE("triangulate/planar_patches") {
         }
         for (std::uint32_t i = 1; i <= 12; ++i) mesh.indices.insert(mesh.indices.end(), {0, i, i + 1});
         const TriangleMesh before = mesh;
-        const auto report = retriangulate_planar_patches(mesh);
-        REQUIRE(report.has_value());
+        const auto report = retriangulate_planar_patches(mesh).value();
         CHECK(mesh.indices == before.indices);
-        CHECK(report->improved == 0);
-        CHECK(report->refused == 1);
-        REQUIRE(report->results.size() == 1);
-        CHECK_FALSE(report->results[0].refused.empty());
-        CHECK(report->results[0].weight_after == report->results[0].weight_before);
+        CHECK(report.improved == 0);
+        CHECK(report.refused == 1);
+        REQUIRE(report.results.size() == 1);
+        CHECK_FALSE(report.results[0].refused.empty());
+        CHECK(report.results[0].weight_after == report.results[0].weight_before);
     }
 
     TEST_CASE("a finely divided flat grid keeps its inner vertices") {
@@ -319,12 +316,11 @@ TEST_SUITE("triangulate/planar_patches") {
                 mesh.indices.insert(mesh.indices.end(), {i, i + kSide + 1, i + 1, i + 1, i + kSide + 1, i + kSide + 2});
             }
         }
-        const auto report = retriangulate_planar_patches(mesh);
-        REQUIRE(report.has_value());
-        CHECK(report->patches == 1);
-        CHECK(report->unproven == 0);
+        const auto report = retriangulate_planar_patches(mesh).value();
+        CHECK(report.patches == 1);
+        CHECK(report.unproven == 0);
         // Every cell has two equal diagonals: already minimal.
-        CHECK(report->improved == 0);
-        CHECK(report->weight_after == doctest::Approx(report->weight_before));
+        CHECK(report.improved == 0);
+        CHECK(report.weight_after == doctest::Approx(report.weight_before));
     }
 }

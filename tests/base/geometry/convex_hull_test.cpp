@@ -145,11 +145,10 @@ TEST_SUITE("geometry/convex_hull") {
                 std::vector<glm::dvec3> points;
                 for (int i = 0; i < 24; ++i) points.emplace_back(i & 1, i >> 1 & 1, flat ? 0.5 * (i & 1) : i >> 2 & 1);
                 std::shuffle(points.begin(), points.end(), random);
-                const auto hull = convex_hull(std::span<const glm::dvec3>(points));
-                REQUIRE(hull.has_value());
-                CHECK(hull->vertices.size() == (flat ? 4 : 8));
-                if (!flat) check_solid(points, *hull, 1e-12);
-                for (const std::uint32_t v : hull->vertices)
+                const auto hull = convex_hull(std::span<const glm::dvec3>(points)).value();
+                CHECK(hull.vertices.size() == (flat ? 4 : 8));
+                if (!flat) check_solid(points, hull, 1e-12);
+                for (const std::uint32_t v : hull.vertices)
                     CHECK(std::find(points.begin(), points.end(), points[v]) - points.begin() == v);
             }
     }
@@ -158,10 +157,9 @@ TEST_SUITE("geometry/convex_hull") {
         for (const double size : {1e-200, 1e-300, 1e-308, 1e-315}) {
             std::vector<glm::dvec3> points;
             for (int i = 0; i < 8; ++i) points.push_back(size * glm::dvec3(i & 1, i >> 1 & 1, i >> 2 & 1));
-            const auto hull = convex_hull(std::span<const glm::dvec3>(points));
-            REQUIRE(hull.has_value());
-            CHECK(hull->rank == 3);
-            CHECK(hull->vertices.size() == 8);
+            const auto hull = convex_hull(std::span<const glm::dvec3>(points)).value();
+            CHECK(hull.rank == 3);
+            CHECK(hull.vertices.size() == 8);
         }
     }
 }

@@ -78,13 +78,13 @@ TEST_SUITE("geometry/frustum") {
                     camera.position = distance * glm::dvec3(1.0, 0.7, -0.3);
                     camera.forward = {0.3, -0.2, -0.9};
                     camera.far_distance = far;
-                    const auto frustum = frustum_of(length * world_to_clip(camera), DepthRange::reversed_zero_to_one);
-                    REQUIRE(frustum.has_value());
+                    const auto frustum =
+                        frustum_of(length * world_to_clip(camera), DepthRange::reversed_zero_to_one).value();
                     const glm::dvec3 ahead = glm::normalize(camera.forward);
                     for (const auto& [along, inside] : {std::pair(0.05, false), std::pair(10.0, true)}) {
                         const glm::dvec3 at = camera.position + along * ahead;
                         bool within = true;
-                        for (const Plane& plane : frustum->view())
+                        for (const Plane& plane : frustum.view())
                             within &= glm::dot(plane.normal, at) + plane.offset >= 0.0;
                         CHECK(within == inside);
                     }
@@ -101,9 +101,8 @@ TEST_SUITE("geometry/frustum") {
             return matrix;
         };
         CHECK(error_of(frustum_of(with_side(-1.0), DepthRange::zero_to_one)).code == ErrorCode::empty);
-        const auto open = frustum_of(with_side(1.0), DepthRange::zero_to_one);
-        REQUIRE(open.has_value());
-        CHECK(open->plane_count == 5);
+        const auto open = frustum_of(with_side(1.0), DepthRange::zero_to_one).value();
+        CHECK(open.plane_count == 5);
     }
 
     TEST_CASE("parameters and matrices of every kind give the same volume as the clip conditions") {
@@ -143,12 +142,10 @@ TEST_SUITE("geometry/frustum") {
     TEST_CASE("corners project to the corners of the clip volume") {
         Camera camera;
         camera.position = {1.0, 2.0, 3.0};
-        const auto frustum = frustum_of(camera);
-        REQUIRE(frustum.has_value());
-        const auto corners = frustum_corners(*frustum);
-        REQUIRE(corners.has_value());
+        const auto frustum = frustum_of(camera).value();
+        const auto corners = frustum_corners(frustum).value();
         for (unsigned i = 0; i < 8; ++i) {
-            const glm::dvec4 p = world_to_clip(camera) * glm::dvec4(camera.position + (*corners)[i], 1.0);
+            const glm::dvec4 p = world_to_clip(camera) * glm::dvec4(camera.position + corners[i], 1.0);
             CHECK(p.x / p.w == doctest::Approx((i & 1) ? 1.0 : -1.0));
             CHECK(p.y / p.w == doctest::Approx((i & 2) ? 1.0 : -1.0));
             CHECK(p.z / p.w == doctest::Approx((i & 4) ? 0.0 : 1.0).epsilon(1e-6));

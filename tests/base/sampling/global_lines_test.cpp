@@ -69,9 +69,8 @@ TEST_SUITE("sampling/global_lines") {
         for (const glm::dvec3& c : corners(box)) hull.positions.emplace_back(c);
         hull.indices = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
                         2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
-        const auto from_hull = LinesFromHull::make(hull);
-        REQUIRE(from_hull.has_value());
-        CHECK(from_hull->area() == doctest::Approx(surface_area(box)));
+        const auto from_hull = LinesFromHull::make(hull).value();
+        CHECK(from_hull.area() == doctest::Approx(surface_area(box)));
         const double r = 0.2, chance = 4.0 * pi * r * r / surface_area(box);
         const glm::dvec3 place = box.center + 1.5 * glm::dvec3(box.axes[0]) - 0.5 * glm::dvec3(box.axes[1]);
         int box_hits = 0, hull_hits = 0;
@@ -79,7 +78,7 @@ TEST_SUITE("sampling/global_lines") {
             const Line line = line_from_box(box, random.point<5>());
             box_hits += meets(line, place, r);
             CHECK(contains(box, box.center + 0.999 * (line.point - box.center)));
-            hull_hits += meets((*from_hull)(random.point<5>()), place, r);
+            hull_hits += meets((from_hull)(random.point<5>()), place, r);
         }
         CHECK(plausible(box_hits, kLines, chance));
         CHECK(plausible(hull_hits, kLines, chance));

@@ -62,12 +62,11 @@ TEST_SUITE("boxtree/box_tree") {
     }
 
     TEST_CASE("all leaves but one are full, and the height is logarithmic") {
-        const auto tree = BoxTree::build(oracle::random_crowd(16 * 16 * 16 + 5, 0.0, 3).boxes);
-        REQUIRE(tree.has_value());
-        CHECK(tree->structure().leaves().size() == 257);
-        CHECK(tree->structure().height() == 3);
+        const auto tree = BoxTree::build(oracle::random_crowd(16 * 16 * 16 + 5, 0.0, 3).boxes).value();
+        CHECK(tree.structure().leaves().size() == 257);
+        CHECK(tree.structure().height() == 3);
         std::size_t partial = 0;
-        for (const boxtree::Leaf& leaf : tree->structure().leaves()) partial += leaf.count < boxtree::kWidth;
+        for (const boxtree::Leaf& leaf : tree.structure().leaves()) partial += leaf.count < boxtree::kWidth;
         CHECK(partial == 1);
     }
 
@@ -158,10 +157,9 @@ TEST_SUITE("boxtree/box_tree") {
                         *executor);
                 };
                 Asked all;
-                const auto tree = build(all);
-                REQUIRE(tree);
-                CHECK(tree->serialise() ==
-                      BoxTree::build(boxes, {.orientation = tree->structure().orientation()})->serialise());
+                const auto tree = build(all).value();
+                CHECK(tree.serialise() ==
+                      BoxTree::build(boxes, {.orientation = tree.structure().orientation()})->serialise());
                 CHECK(all.count >= 4);
                 CHECK(all.count < 200);
                 // Threads are asked as they come: another time some fewer or more.
@@ -176,10 +174,10 @@ TEST_SUITE("boxtree/box_tree") {
                     CHECK(memory.bytes_in_use() == 0);
                 }
                 Asked checked;
-                REQUIRE(tree->validate(should_stop, &checked));
+                REQUIRE(tree.validate(should_stop, &checked));
                 CHECK(checked.count >= kCount / 16 / 256);
                 Asked stopped{.stop_at = checked.count / 2};
-                CHECK(error_of(tree->validate(should_stop, &stopped)).code == ErrorCode::cancelled);
+                CHECK(error_of(tree.validate(should_stop, &stopped)).code == ErrorCode::cancelled);
                 CHECK(stopped.count == checked.count / 2);
             }
     }

@@ -64,9 +64,7 @@ std::vector<glm::dvec3> corners_of_leaves(const BoxTree& tree) {
 }
 
 BoxTree tree_of(const oracle::Crowd& crowd, Orientation orientation) {
-    auto tree = BoxTree::build(crowd.boxes, crowd.layers, {.orientation = orientation});
-    REQUIRE(tree.has_value());
-    return std::move(*tree);
+    return BoxTree::build(crowd.boxes, crowd.layers, {.orientation = orientation}).value();
 }
 
 }  // namespace
@@ -106,9 +104,8 @@ TEST_SUITE("boxtree/oriented") {
         std::vector<Obb> boxes(300, needle(45.0));
         boxes[250] = needle(30.0);
         for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i].center.x = 1e-3 * static_cast<double>(i);
-        const auto tree = BoxTree::build(boxes, {.orientation = Orientation::oriented});
-        REQUIRE(tree.has_value());
-        const boxtree::Structure& structure = tree->structure();
+        const auto tree = BoxTree::build(boxes, {.orientation = Orientation::oriented}).value();
+        const boxtree::Structure& structure = tree.structure();
         const boxtree::Axes& axes = structure.axes_of(structure.nodes()[0]);
         double along = 0.0;
         for (const auto& row : axes.rows) along = std::max(along, std::fabs(row[0] + row[1]) * std::sqrt(0.5));
@@ -184,10 +181,9 @@ TEST_SUITE("boxtree/oriented") {
             ThreadPool pool(threads);
             CHECK(BoxTree::build(crowd.boxes, crowd.layers, options, pool)->serialise() == bytes);
         }
-        auto back = BoxTree::deserialise(bytes);
-        REQUIRE(back.has_value());
-        CHECK(turned_nodes(*back) > 0);
-        CHECK(back->serialise() == bytes);
-        CHECK(back->structure().orientation() == Orientation::automatic);
+        auto back = BoxTree::deserialise(bytes).value();
+        CHECK(turned_nodes(back) > 0);
+        CHECK(back.serialise() == bytes);
+        CHECK(back.structure().orientation() == Orientation::automatic);
     }
 }

@@ -396,14 +396,13 @@ TEST_SUITE("fit/exact") {
                 for (int i = 0; i < 5 + trial; ++i)
                     points.push_back({size * uniform(random), size * uniform(random), height});
                 const fit::ExactOptions options{.criterion = {0.3, 0.2, 0.5}, .gap = trial < 2 ? 2e-7 : 1e-5};
-                const auto found = fit::fit_exact(std::span<const glm::dvec3>(points), options);
-                REQUIRE(found.has_value());
+                const auto found = fit::fit_exact(std::span<const glm::dvec3>(points), options).value();
                 CAPTURE(decade);
-                const double unproved = found->gap - found->rounding;
-                if (found->complete) CHECK(unproved <= options.gap * (1.0 + 1e-6) + 1e-12);
-                if (decade <= 6) CHECK(found->complete);  // volume counts no more than a million times as much
-                (found->complete ? complete : incomplete) += 1;
-                CHECK(found->lower_bound <= found->value);
+                const double unproved = found.gap - found.rounding;
+                if (found.complete) CHECK(unproved <= options.gap * (1.0 + 1e-6) + 1e-12);
+                if (decade <= 6) CHECK(found.complete);  // volume counts no more than a million times as much
+                (found.complete ? complete : incomplete) += 1;
+                CHECK(found.lower_bound <= found.value);
                 // No axis-aligned box that lies flat has less than what is said to be proved.
                 for (int step = 0; step < 180; ++step) {
                     const double angle = 0.01745329 * step, c = std::cos(angle), s = std::sin(angle);
@@ -413,7 +412,7 @@ TEST_SUITE("fit/exact") {
                             const double t = k == 0 ? c * p.x + s * p.y : c * p.y - s * p.x;
                             low[k] = std::min(low[k], t), high[k] = std::max(high[k], t);
                         }
-                    CHECK(found->lower_bound <=
+                    CHECK(found.lower_bound <=
                           options.criterion(high[0] - low[0], high[1] - low[1], 0.0) * (1.0 + 1e-12));
                 }
             }

@@ -253,9 +253,8 @@ TEST_SUITE("fit/planar") {
         CHECK(error_of(fit::minimal_triangle({}, PlanarCriterion::area)).code == ErrorCode::empty);
         Points points = {{0.0, 0.0}, {4.0, 0.0}, {1.0, 3.0}, {1.5, 1.0}};
         for (const PlanarCriterion criterion : {PlanarCriterion::area, PlanarCriterion::perimeter}) {
-            const auto own = fit::minimal_triangle(view(points), criterion);
-            REQUIRE(own.has_value());
-            for (const glm::dvec2& c : *own)
+            const auto own = fit::minimal_triangle(view(points), criterion).value();
+            for (const glm::dvec2& c : own)
                 CHECK(std::min({glm::distance(c, points[0]), glm::distance(c, points[1]),
                                 glm::distance(c, points[2])}) < 1e-7);
             const Points line = {{0.0, 0.0}, {2.0, 2.0}, {1.0, 1.0}};
@@ -308,15 +307,14 @@ TEST_SUITE("fit/planar") {
                 points.push_back(p);
             }
             for (const PlanarCriterion criterion : {PlanarCriterion::area, PlanarCriterion::perimeter}) {
-                const auto best = fit::minimal_triangle(view(points), criterion);
-                REQUIRE(best.has_value());
-                for (const glm::dvec2& p : points) CHECK(contains(*best, p));
-                const double value = measure_of(*best, criterion);
+                const auto best = fit::minimal_triangle(view(points), criterion).value();
+                for (const glm::dvec2& p : points) CHECK(contains(best, p));
+                const double value = measure_of(best, criterion);
                 const double grid = triangle_by_brute_force(points, criterion, 36);
                 CHECK(value <= grid * (1.0 + 1e-9));
                 // Tight: no side can be moved inward, and a slightly smaller triangle loses a point.
-                for (std::size_t k = 0; k < 3 && measure_of(*best, PlanarCriterion::area) > 1e-9; ++k) {
-                    const glm::dvec2 a = (*best)[k], b = (*best)[(k + 1) % 3], side = glm::normalize(b - a);
+                for (std::size_t k = 0; k < 3 && measure_of(best, PlanarCriterion::area) > 1e-9; ++k) {
+                    const glm::dvec2 a = best[k], b = best[(k + 1) % 3], side = glm::normalize(b - a);
                     double nearest = 1e300;
                     for (const glm::dvec2& p : points) nearest = std::min(nearest, std::abs(cross(side, p - a)));
                     CHECK(nearest < 1e-7);
@@ -338,14 +336,13 @@ TEST_SUITE("fit/planar") {
                 for (const glm::dvec2& q : points) longest = std::max(longest, glm::distance(p, q));
             for (const PlanarCriterion criterion : {PlanarCriterion::area, PlanarCriterion::perimeter}) {
                 if (criterion == PlanarCriterion::perimeter && trial % 10 != 0) continue;
-                const auto best = fit::minimal_triangle(view(points), criterion);
-                REQUIRE(best.has_value());
+                const auto best = fit::minimal_triangle(view(points), criterion).value();
                 for (const glm::dvec2& p : points) {
-                    CHECK(orientation((*best)[0], (*best)[1], p) >= 0);
-                    CHECK(orientation((*best)[1], (*best)[2], p) >= 0);
-                    CHECK(orientation((*best)[2], (*best)[0], p) >= 0);
+                    CHECK(orientation(best[0], best[1], p) >= 0);
+                    CHECK(orientation(best[1], best[2], p) >= 0);
+                    CHECK(orientation(best[2], best[0], p) >= 0);
                 }
-                CHECK(measure_of(*best, PlanarCriterion::perimeter) <= 8.0 * longest + 1e-9);
+                CHECK(measure_of(best, PlanarCriterion::perimeter) <= 8.0 * longest + 1e-9);
             }
         }
     }
@@ -371,11 +368,10 @@ TEST_SUITE("fit/planar") {
                 double length = 0.0;
                 for (const glm::dvec2& p : points)
                     for (const glm::dvec2& q : points) length = std::max(length, glm::distance(p, q));
-                const auto best = fit::minimal_triangle(view(points), PlanarCriterion::perimeter);
-                REQUIRE(best.has_value());
+                const auto best = fit::minimal_triangle(view(points), PlanarCriterion::perimeter).value();
                 for (const glm::dvec2& p : points)
-                    for (std::size_t k = 0; k < 3; ++k) CHECK(orientation((*best)[k], (*best)[(k + 1) % 3], p) >= 0);
-                const double told = measure_of(*best, PlanarCriterion::perimeter);
+                    for (std::size_t k = 0; k < 3; ++k) CHECK(orientation(best[k], best[(k + 1) % 3], p) >= 0);
+                const double told = measure_of(best, PlanarCriterion::perimeter);
                 const double rounded = thickness * size + 0x1p-52 * (2.0 * offset + size);
                 CAPTURE(thickness);
                 CAPTURE(trial);
@@ -397,8 +393,7 @@ TEST_SUITE("fit/planar") {
                                  d = i < 4 ? i % 2 : std::abs(uniform(random));
                     points.push_back(offset + t * along + thickness * d * across);
                 }
-                const auto best = fit::minimal_triangle(view(points), PlanarCriterion::perimeter);
-                REQUIRE(best.has_value());
+                const auto best = fit::minimal_triangle(view(points), PlanarCriterion::perimeter).value();
                 // Either one sharp corner, e beyond an end, and the side across as high as the rest asks, or two, each
                 // e beyond an end, on one long side: 2 (1 + e) + t (1 + e) / e, or 1 + 2 e + √((1 + 2 e)² + (t / e)²
                 // …).
@@ -406,7 +401,7 @@ TEST_SUITE("fit/planar") {
                 const double height = thickness / f * (0.5 + f);
                 const double least = std::min(2.0 * (1.0 + e) + thickness * (1.0 + e) / e,
                                               1.0 + 2.0 * f + 2.0 * std::hypot(0.5 + f, height));
-                const double told = measure_of(*best, PlanarCriterion::perimeter);
+                const double told = measure_of(best, PlanarCriterion::perimeter);
                 CAPTURE(thickness);
                 CHECK(told <= least + thickness + 1e-9);
                 CHECK(told >= least - 4.0 * thickness - 1e-9);

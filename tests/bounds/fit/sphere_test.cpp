@@ -86,11 +86,10 @@ TEST_SUITE("fit/sphere") {
                 if (trial % 4 == 2) p = glm::round(2.0 * p);  // many at one distance, many equal
                 points.push_back(1e3 * p + glm::dvec3(trial % 7 == 0 ? 1e5 : 0.0));
             }
-            const auto sphere = sphere_of(points);
-            REQUIRE(sphere.has_value());
-            CHECK(farthest(points, sphere->center) <= sphere->radius);
-            for (const glm::dvec3& p : points) CHECK(contains(*sphere, p));
-            CHECK(sphere->radius <= by_descent(points) * (1.0 + 1e-8));
+            const auto sphere = sphere_of(points).value();
+            CHECK(farthest(points, sphere.center) <= sphere.radius);
+            for (const glm::dvec3& p : points) CHECK(contains(sphere, p));
+            CHECK(sphere.radius <= by_descent(points) * (1.0 + 1e-8));
         }
     }
 }

@@ -153,12 +153,11 @@ TEST_SUITE("measure/intrinsic_volumes") {
         camera.aspect = 1.5;
         camera.near_distance = 1.0;
         camera.far_distance = 5.0;
-        const auto measures = intrinsic_volumes_of_frustum(camera);
-        REQUIRE(measures.has_value());
+        const auto measures = intrinsic_volumes_of_frustum(camera).value();
         const IntrinsicVolumes box = intrinsic_volumes_of_box(3.0, 2.0, 4.0);
-        CHECK(measures->volume == doctest::Approx(box.volume));
-        CHECK(measures->area == doctest::Approx(box.area));
-        CHECK(measures->mean_curvature == doctest::Approx(box.mean_curvature));
+        CHECK(measures.volume == doctest::Approx(box.volume));
+        CHECK(measures.area == doctest::Approx(box.area));
+        CHECK(measures.mean_curvature == doctest::Approx(box.mean_curvature));
     }
 
     TEST_CASE("a perspective view volume has the volume and area of its truncated pyramid") {
@@ -167,13 +166,12 @@ TEST_SUITE("measure/intrinsic_volumes") {
         camera.aspect = 0.6;
         camera.near_distance = 0.1;
         camera.far_distance = 10.0;
-        const auto measures = intrinsic_volumes_of_frustum(camera);
-        REQUIRE(measures.has_value());
+        const auto measures = intrinsic_volumes_of_frustum(camera).value();
         const auto face = [](double d) { return 4.0 * 0.6 * d * d; };
-        CHECK(measures->volume == doctest::Approx((face(10.0) * 10.0 - face(0.1) * 0.1) / 3.0));
+        CHECK(measures.volume == doctest::Approx((face(10.0) * 10.0 - face(0.1) * 0.1) / 3.0));
         const double slant_x = 4.0 * 0.5 * std::sqrt(1.0 + 0.36) * (100.0 - 0.01);  // left and right: half-width 0.6
         const double slant_y = 4.0 * 0.5 * 0.6 * std::sqrt(2.0) * (100.0 - 0.01);
-        CHECK(measures->area == doctest::Approx(face(10.0) + face(0.1) + slant_x + slant_y));
+        CHECK(measures.area == doctest::Approx(face(10.0) + face(0.1) + slant_x + slant_y));
     }
 
     TEST_CASE("the kinematic formula is symmetric and gives Steiner's formula for a sphere") {

@@ -44,9 +44,8 @@ TEST_SUITE("measure/planar") {
         std::vector<glm::dvec2> grid;
         for (int y = 4; y >= 0; --y)
             for (int x = 0; x < 5; ++x) grid.emplace_back(x, y);
-        const auto hull = convex_hull(grid);
-        REQUIRE(hull.has_value());
-        CHECK(std::vector<glm::dvec2>(hull->begin(), hull->end()) ==
+        const auto hull = convex_hull(grid).value();
+        CHECK(std::vector<glm::dvec2>(hull.begin(), hull.end()) ==
               std::vector<glm::dvec2>{{0.0, 0.0}, {4.0, 0.0}, {4.0, 4.0}, {0.0, 4.0}});
     }
 
@@ -93,12 +92,11 @@ TEST_SUITE("measure/planar") {
             const glm::dvec2 along(uniform(random), uniform(random));
             std::vector<glm::dvec2> points;
             for (int i = 0; i < 3 + trial % 8; ++i) points.push_back(0.3 + along * uniform(random));
-            const auto hull = convex_hull(points);
-            REQUIRE(hull.has_value());
-            const std::size_t n = hull->size();
+            const auto hull = convex_hull(points).value();
+            const std::size_t n = hull.size();
             for (std::size_t i = 0; i < n && n > 2; ++i) {
-                const glm::dvec2 &a = (*hull)[i], &b = (*hull)[(i + 1) % n];
-                CHECK(orientation(a, b, (*hull)[(i + 2) % n]) > 0);
+                const glm::dvec2 &a = hull[i], &b = hull[(i + 1) % n];
+                CHECK(orientation(a, b, hull[(i + 2) % n]) > 0);
                 for (const glm::dvec2& p : points) CHECK(orientation(a, b, p) >= 0);
             }
         }

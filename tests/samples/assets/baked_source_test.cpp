@@ -84,10 +84,9 @@ void check_kept(const std::string& path) {
     baked->scene.update();
     check_same_source(*source, *baked);
     // Once more: what was baked of a baked scene is the same.
-    auto again = through_a_file(*baked);
-    REQUIRE(again.has_value());
-    again->scene.update();
-    check_same_source(*source, *again);
+    auto again = through_a_file(*baked).value();
+    again.scene.update();
+    check_same_source(*source, again);
 }
 
 // Five primitives of one wedge: flat and one-sided, smooth, two-sided, unlit, mirrored and glowing.
@@ -137,37 +136,33 @@ TEST_SUITE("assets/baked_source") {
         check_kept(obj.path());
         check_kept(level.path());
         for (const char* made : {"room", "office", "valley"}) check_kept(made);
-        const auto town = assets::load_scene("town", {.instances = 300});
-        REQUIRE(town.has_value());
-        const auto baked = through_a_file(*town);
+        const auto town = assets::load_scene("town", {.instances = 300}).value();
+        const auto baked = through_a_file(town);
         REQUIRE_MESSAGE(baked.has_value(), test_files::message(baked));
-        CHECK(town->walk == baked->walk);
-        check_same_flags(town->one_sided, baked->one_sided);
+        CHECK(town.walk == baked->walk);
+        check_same_flags(town.one_sided, baked->one_sided);
     }
 
     TEST_CASE("baked meshes come with the clusters that cutting them gives, unless they are left out") {
-        auto source = assets::load_scene("room");
-        REQUIRE(source.has_value());
-        source->scene.update();
-        const auto baked = through_a_file(*source), without = through_a_file(*source, {.clusters = false});
+        auto source = assets::load_scene("room").value();
+        source.scene.update();
+        const auto baked = through_a_file(source), without = through_a_file(source, {.clusters = false});
         REQUIRE(baked.has_value());
         REQUIRE(without.has_value());
         CHECK(without->clusters.empty());
-        REQUIRE(baked->clusters.size() == source->scene.mesh_count());
-        for (scene::MeshId m = 0; m < source->scene.mesh_count(); ++m) {
-            const TriangleMesh& mesh = source->scene.mesh(m);
+        REQUIRE(baked->clusters.size() == source.scene.mesh_count());
+        for (scene::MeshId m = 0; m < source.scene.mesh_count(); ++m) {
+            const TriangleMesh& mesh = source.scene.mesh(m);
             CHECK(baked->clusters[m].serialise() ==
                   depth::ClusteredMesh::cut(mesh.positions, mesh.indices)->serialise());
         }
     }
 
     TEST_CASE("a file without what the samples write besides the scene is read, as older versions wrote it") {
-        auto source = assets::load_scene("room");
-        REQUIRE(source.has_value());
-        source->scene.update();
-        const auto bytes = bake::bake(source->scene, serial_executor(), {.clusters = false});
-        REQUIRE(bytes.has_value());
-        const TemporaryFile file("old.crofton", text_of(*bytes));
+        auto source = assets::load_scene("room").value();
+        source.scene.update();
+        const auto bytes = bake::bake(source.scene, serial_executor(), {.clusters = false}).value();
+        const TemporaryFile file("old.crofton", text_of(bytes));
         const auto old = assets::load_scene(file.path());
         REQUIRE_MESSAGE(old.has_value(), test_files::message(old));
         CHECK(old->unit == 0.0);
@@ -177,17 +172,15 @@ TEST_SUITE("assets/baked_source") {
     }
 
     TEST_CASE("a walk, a room, a light and counts that are none are refused by their section") {
-        auto source = assets::load_scene("room");
-        REQUIRE(source.has_value());
-        source->scene.update();
-        source->rooms.resize(2);
+        auto source = assets::load_scene("room").value();
+        source.scene.update();
+        source.rooms.resize(2);
         const auto refused = [&](assets::SceneSource& bad, const char* section) {
-            const auto bytes = assets::bake_source(bad, serial_executor());
-            REQUIRE(bytes.has_value());
+            const auto bytes = assets::bake_source(bad, serial_executor()).value();
             assets::SceneSource read{"", scene::Scene(), {}, {}, {}, {}};
             for (scene::MeshId m = 0; m < bad.scene.mesh_count(); ++m)
                 REQUIRE(read.scene.add_mesh(bad.scene.mesh(m), ""));
-            const auto result = assets::read_visit(*bytes, read);
+            const auto result = assets::read_visit(bytes, read);
             REQUIRE_FALSE(result.has_value());
             CHECK(result.error().code == ErrorCode::parse);
             CHECK_MESSAGE(result.error().message.find(section) != std::string::npos, result.error().message);
@@ -204,9 +197,9 @@ TEST_SUITE("assets/baked_source") {
         with([&](assets::SceneSource& s) { s.rooms[1].ceiling = nan; }, "vi_rooms");
         with([&](assets::SceneSource& s) { s.rooms[0].corners[3].y = HUGE_VAL; }, "vi_rooms");
         const auto glowing = std::size_t(
-            std::find_if(source->emission.begin(), source->emission.end(), [](const auto& e) { return !e.empty(); }) -
-            source->emission.begin());
-        REQUIRE(glowing < source->emission.size());
+            std::find_if(source.emission.begin(), source.emission.end(), [](const auto& e) { return !e.empty(); }) -
+            source.emission.begin());
+        REQUIRE(glowing < source.emission.size());
         with([&](assets::SceneSource& s) { s.emission[glowing][0].x = -1.0f; }, "vi_glow");
         with([&](assets::SceneSource& s) { s.emission[glowing].push_back(glm::vec3(1.0f)); }, "vi_glend");
         with([&](assets::SceneSource& s) { s.emission.resize(1000); }, "vi_glend");

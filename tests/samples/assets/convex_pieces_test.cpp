@@ -68,11 +68,10 @@ TEST_SUITE("assets/convex_pieces") {
                 star.emplace_back(r * std::cos(angle), r * std::sin(angle));
             }
             const Polygon polygon = ring_of(star);
-            const auto triangulation = triangulate::triangulate(polygon);
-            REQUIRE(triangulation.has_value());
+            const auto triangulation = triangulate::triangulate(polygon).value();
             double covered = 0.0;
             std::size_t triangles = 0;
-            for (const auto& piece : convex_pieces(polygon, triangulation->triangles)) {
+            for (const auto& piece : convex_pieces(polygon, triangulation.triangles)) {
                 const std::size_t corners = piece[3] == piece[2] ? 3 : 4;
                 for (std::size_t i = 0; i < corners; ++i)
                     CHECK(orientation(polygon.points[piece[i]], polygon.points[piece[(i + 1) % corners]],
@@ -81,9 +80,9 @@ TEST_SUITE("assets/convex_pieces") {
                 triangles += corners - 2;
                 quadrangles += corners == 4;
             }
-            CHECK(triangles == triangulation->triangles.size());
+            CHECK(triangles == triangulation.triangles.size());
             double whole = 0.0;
-            for (const auto& triangle : triangulation->triangles) whole += twice_area(polygon, triangle);
+            for (const auto& triangle : triangulation.triangles) whole += twice_area(polygon, triangle);
             CHECK(covered == doctest::Approx(whole));
         }
         CHECK(quadrangles > 100);

@@ -51,9 +51,8 @@ TEST_SUITE("assets/gltf_color") {
         asset.mesh(positions, indices)["attributes"]["COLOR_0"] = colors;
         asset.root["meshes"][0]["name"] = "wall";
         const test_files::TemporaryFile file("colors.glb", asset.glb());
-        const auto scene = assets::load_scene(file.path());
-        REQUIRE(scene.has_value());
-        const auto& read = scene->scene.mesh(0).colors;
+        const auto scene = assets::load_scene(file.path()).value();
+        const auto& read = scene.scene.mesh(0).colors;
         REQUIRE(read.size() == 3);
         CHECK(read[0] == glm::vec3(1.0f, 0.0f, 0.0f));
         CHECK(read[1] == glm::vec3(0.0f, 1.0f, 0.0f));

@@ -90,9 +90,8 @@ TEST_SUITE("assets/gltf_compression") {
         asset.root["extensionsUsed"] = asset.root["extensionsRequired"] = {"EXT_meshopt_compression"};
         CHECK(triangles_of(asset) == triangles_of(plain()));
         const TemporaryFile file("whole.glb", asset.glb());
-        const auto document = assets::read_gltf_document(file.path());
-        REQUIRE(document.has_value());
-        CHECK_FALSE(document->root.contains("extensionsRequired"));
+        const auto document = assets::read_gltf_document(file.path()).value();
+        CHECK_FALSE(document.root.contains("extensionsRequired"));
         for (const auto& [key, value] : {std::pair<const char*, Json>{"mode", "INDICES?"},
                                          {"count", 3},
                                          {"byteStride", 300},

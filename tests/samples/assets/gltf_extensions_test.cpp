@@ -173,14 +173,12 @@ TEST_SUITE("assets/gltf_extensions") {
         asset.root["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"] = {
             {"bufferView", garbage}, {"attributes", {{"POSITION", 0}}}};
         const TemporaryFile file("copy.glb", asset.glb());
-        const auto untouched = assets::read_gltf_document(file.path());
-        REQUIRE(untouched.has_value());
-        CHECK(untouched->root["bufferViews"][0].contains("extensions"));
-        const auto document = assets::read_gltf_document(file.path(), {.limits = {}, .plain_copies = true});
-        REQUIRE(document.has_value());
-        CHECK_FALSE(document->root["bufferViews"][0].contains("extensions"));
-        CHECK_FALSE(document->root["meshes"][0]["primitives"][0].contains("extensions"));
-        CHECK_FALSE(document->root.contains("extensionsUsed"));
+        const auto untouched = assets::read_gltf_document(file.path()).value();
+        CHECK(untouched.root["bufferViews"][0].contains("extensions"));
+        const auto document = assets::read_gltf_document(file.path(), {.limits = {}, .plain_copies = true}).value();
+        CHECK_FALSE(document.root["bufferViews"][0].contains("extensions"));
+        CHECK_FALSE(document.root["meshes"][0]["primitives"][0].contains("extensions"));
+        CHECK_FALSE(document.root.contains("extensionsUsed"));
         const auto source = assets::load_scene(file.path());
         REQUIRE_MESSAGE(source.has_value(), test_files::message(source));
         CHECK(source->scene.mesh(0).positions[1] == glm::vec3(1.0f, 0.0f, 0.0f));

@@ -54,10 +54,9 @@ TEST_SUITE("assets/gltf_loader") {
     }
 
     TEST_CASE("whole numbers may be written with a point or an exponent") {
-        const auto source = load_glb(gltf_json("[{\"children\":[1.0,20e-1]},{\"mesh\":0.0},{\"mesh\":0e3}]"));
-        REQUIRE(source.has_value());
-        CHECK(source->scene.instance_count() == 2);
-        CHECK(source->warnings.empty());
+        const auto source = load_glb(gltf_json("[{\"children\":[1.0,20e-1]},{\"mesh\":0.0},{\"mesh\":0e3}]")).value();
+        CHECK(source.scene.instance_count() == 2);
+        CHECK(source.warnings.empty());
         for (const char* wrong : {"1.5", "-1.0", "1e300", "2e19"})
             CHECK(
                 says(message(load_glb(gltf_json("[{\"children\":[" + std::string(wrong) + "]},{}]"))), "is no index"));
@@ -66,19 +65,17 @@ TEST_SUITE("assets/gltf_loader") {
     TEST_CASE("a scale that flattens is data: flat things are flat, a zero scale hides") {
         for (const bool hidden : {false, true}) {
             const std::string scale = hidden ? "[0,0,0]" : "[1,0,1]";
-            auto source = load_glb(gltf_json("[{\"mesh\":0,\"scale\":" + scale + "}]"));
-            REQUIRE(source.has_value());
-            source->scene.update();
-            CHECK(source->scene.layer_masks()[0] == (hidden ? 0 : ~0u));
+            auto source = load_glb(gltf_json("[{\"mesh\":0,\"scale\":" + scale + "}]")).value();
+            source.scene.update();
+            CHECK(source.scene.layer_masks()[0] == (hidden ? 0 : ~0u));
         }
     }
 
     TEST_CASE("cycles, missing nodes, meshes and accessors are named") {
-        const auto cycle = load_glb(gltf_json("[{\"children\":[1]},{\"children\":[0],\"mesh\":0}]"));
-        REQUIRE(cycle.has_value());
-        CHECK(cycle->scene.instance_count() == 1);
-        REQUIRE(cycle->warnings.size() == 1);
-        CHECK(says(cycle->warnings[0], "node 0: left out: has two parents, or is its own ancestor"));
+        const auto cycle = load_glb(gltf_json("[{\"children\":[1]},{\"children\":[0],\"mesh\":0}]")).value();
+        CHECK(cycle.scene.instance_count() == 1);
+        REQUIRE(cycle.warnings.size() == 1);
+        CHECK(says(cycle.warnings[0], "node 0: left out: has two parents, or is its own ancestor"));
         CHECK(says(message(load_glb(gltf_json("[{\"children\":[7]}]"))), "node 7"));
         CHECK(says(message(load_glb(gltf_json("[{\"mesh\":3}]"))), "mesh 3"));
         CHECK_FALSE(load_glb(gltf_json("[{\"mesh\":0}]", "\"bufferView\":9,\"count\":3")).has_value());
@@ -167,18 +164,16 @@ TEST_SUITE("assets/gltf_loader") {
             return load_glb(text.insert(1, "\"materials\":[" + material + "],"));
         };
         const auto lamp = with_material(
-            "{\"emissiveFactor\":[1,0.5,0.25],\"extensions\":{\"KHR_materials_emissive_strength\":{"
-            "\"emissiveStrength\":8}}}");
-        REQUIRE(lamp.has_value());
-        REQUIRE(lamp->emission.size() == 1);
-        REQUIRE(lamp->emission[0].size() == 1);
-        CHECK(lamp->emission[0][0] == glm::vec3(8.0f, 4.0f, 2.0f));
-        const auto dim = with_material("{\"emissiveFactor\":[1,0.5,0.25]}");
-        REQUIRE(dim.has_value());
-        CHECK(dim->emission.at(0).at(0) == glm::vec3(1.0f, 0.5f, 0.25f));
-        const auto dark = with_material("{}");
-        REQUIRE(dark.has_value());
-        CHECK(dark->emission.empty());
+                              "{\"emissiveFactor\":[1,0.5,0.25],\"extensions\":{\"KHR_materials_emissive_strength\":{"
+                              "\"emissiveStrength\":8}}}")
+                              .value();
+        REQUIRE(lamp.emission.size() == 1);
+        REQUIRE(lamp.emission[0].size() == 1);
+        CHECK(lamp.emission[0][0] == glm::vec3(8.0f, 4.0f, 2.0f));
+        const auto dim = with_material("{\"emissiveFactor\":[1,0.5,0.25]}").value();
+        CHECK(dim.emission.at(0).at(0) == glm::vec3(1.0f, 0.5f, 0.25f));
+        const auto dark = with_material("{}").value();
+        CHECK(dark.emission.empty());
     }
 
     TEST_CASE("faces are one-sided unless the material says otherwise") {
@@ -187,12 +182,10 @@ TEST_SUITE("assets/gltf_loader") {
             std::string text = plain;
             text.insert(text.find("\"indices\":1") + 11, ",\"material\":0");
             text.insert(1, std::string("\"materials\":[{\"doubleSided\":") + (twice ? "true" : "false") + "}],");
-            const auto scene = load_glb(text);
-            REQUIRE(scene.has_value());
-            CHECK(scene->one_sided == std::vector<std::uint8_t>{twice ? std::uint8_t{0} : std::uint8_t{1}});
+            const auto scene = load_glb(text).value();
+            CHECK(scene.one_sided == std::vector<std::uint8_t>{twice ? std::uint8_t{0} : std::uint8_t{1}});
         }
-        const auto bare = load_glb(plain);
-        REQUIRE(bare.has_value());
-        CHECK(bare->one_sided == std::vector<std::uint8_t>{1});
+        const auto bare = load_glb(plain).value();
+        CHECK(bare.one_sided == std::vector<std::uint8_t>{1});
     }
 }

@@ -164,11 +164,10 @@ TEST_SUITE("assets/gltf_nodes") {
         CHECK(says(complaint(add(3, 2, 1.0f)),
                    "node 0: EXT_mesh_gpu_instancing: left out: ROTATION: 2 instances, where another attribute has 3"));
         for (const float w : {0.0f, std::nanf(""), INFINITY}) {
-            const auto source = load_asset(add(3, 3, w));
-            REQUIRE(source.has_value());
-            CHECK(source->scene.instance_count() == 2);
-            REQUIRE(source->warnings.size() == 1);
-            CHECK(says(source->warnings[0],
+            const auto source = load_asset(add(3, 3, w)).value();
+            CHECK(source.scene.instance_count() == 2);
+            REQUIRE(source.warnings.size() == 1);
+            CHECK(says(source.warnings[0],
                        "node 0: EXT_mesh_gpu_instancing: 1 instances left out: instance 0: its rotation"));
         }
         const auto attributes = [](const Json& value) {
@@ -593,8 +592,7 @@ TEST_SUITE("assets/gltf_nodes") {
         asset.root["meshes"][0]["primitives"].push_back(asset.root["meshes"][0]["primitives"][0]);
         asset.root["meshes"][0]["primitives"][1]["attributes"]["NORMAL"] = positions;
         asset.root["meshes"][0]["primitives"].push_back(asset.root["meshes"][0]["primitives"][0]);
-        const auto source = load_asset(asset);
-        REQUIRE(source.has_value());
-        CHECK(source->flat == std::vector<std::uint8_t>{1, 0, 1});
+        const auto source = load_asset(asset).value();
+        CHECK(source.flat == std::vector<std::uint8_t>{1, 0, 1});
     }
 }

@@ -118,11 +118,10 @@ TEST_SUITE("assets/hostile_files") {
         std::filesystem::create_symlink("/dev/zero", place.root + "/asset/zero");
         CHECK(says(place.triangle("zero"), "leads out"));
         place.write("asset/a.obj", "mtllib pipe\nmtllib ../secret.bin\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-        const auto obj = assets::load_scene(place.root + "/asset/a.obj");
-        REQUIRE(obj.has_value());
-        REQUIRE(obj->warnings.size() == 2);
-        CHECK(says(obj->warnings[0], "no regular file"));
-        CHECK(says(obj->warnings[1], "leads out"));
+        const auto obj = assets::load_scene(place.root + "/asset/a.obj").value();
+        REQUIRE(obj.warnings.size() == 2);
+        CHECK(says(obj.warnings[0], "no regular file"));
+        CHECK(says(obj.warnings[1], "leads out"));
     }
 
     TEST_CASE("a document embeds only files of its own folder") {
@@ -132,12 +131,11 @@ TEST_SUITE("assets/hostile_files") {
             {{"uri", "../secret.png"}}, {{"uri", place.root + "/secret.png"}}, {{"uri", "own.png"}}};
         for (const char* name : {"secret.png", "asset/own.png"}) place.write(name, "\x89PNG and more");
         place.write("asset/a.glb", asset.glb());
-        const auto document = assets::read_gltf_document(place.root + "/asset/a.glb");
-        REQUIRE(document.has_value());
-        CHECK(document->warnings.size() == 2);
-        CHECK(document->root["images"][0].contains("uri"));
-        CHECK(document->root["images"][1].contains("uri"));
-        CHECK_FALSE(document->root["images"][2].contains("uri"));
+        const auto document = assets::read_gltf_document(place.root + "/asset/a.glb").value();
+        CHECK(document.warnings.size() == 2);
+        CHECK(document.root["images"][0].contains("uri"));
+        CHECK(document.root["images"][1].contains("uri"));
+        CHECK_FALSE(document.root["images"][2].contains("uri"));
     }
 
     TEST_CASE("each limit is an error, or for an image a warning, that names it and its option") {
@@ -213,10 +211,9 @@ TEST_SUITE("assets/hostile_files") {
         assets::LoadOptions options;
         for (const std::size_t missing : {0u, 1u}) {
             options.limits.bytes = asset.glb().size() + 2 * image.size() - missing;
-            const auto source = assets::load_scene(place.root + "/asset/a.glb", options);
-            REQUIRE(source.has_value());
-            REQUIRE(source->warnings.size() == missing);
-            if (missing == 1) CHECK(says(source->warnings[0], "--max-bytes"));
+            const auto source = assets::load_scene(place.root + "/asset/a.glb", options).value();
+            REQUIRE(source.warnings.size() == missing);
+            if (missing == 1) CHECK(says(source.warnings[0], "--max-bytes"));
         }
     }
 
@@ -251,11 +248,10 @@ TEST_SUITE("assets/hostile_files") {
         CHECK(load(zeros) == "loaded");  // without its colours
         zeros.root["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 2;
         const TemporaryFile endless("zeros.glb", zeros.glb());
-        const auto rest = assets::load_scene(endless.path());
-        REQUIRE(rest.has_value());
-        CHECK(rest->scene.instance_count() == 1);
-        REQUIRE(rest->warnings.size() == 1);
-        CHECK(says(rest->warnings[0], "--max-triangles"));
+        const auto rest = assets::load_scene(endless.path()).value();
+        CHECK(rest.scene.instance_count() == 1);
+        REQUIRE(rest.warnings.size() == 1);
+        CHECK(says(rest.warnings[0], "--max-triangles"));
         // An image whose pixels would take gigabytes.
         Asset painted = two_triangles();
         painted.accessor(std::vector<float>{0, 0, 1, 0, 0, 1}, "VEC2");
@@ -265,10 +261,9 @@ TEST_SUITE("assets/hostile_files") {
         painted.root["textures"] = {{{"source", 0}}};
         painted.root["images"] = {{{"uri", assets::make_data_uri("image/png", huge_png(16384))}}};
         const TemporaryFile file("painted.glb", painted.glb());
-        const auto source = assets::load_scene(file.path());
-        REQUIRE(source.has_value());
-        REQUIRE(source->warnings.size() == 1);
-        CHECK(says(source->warnings[0], "image 0: 16384 x 16384 is more than 67108864 pixels"));
+        const auto source = assets::load_scene(file.path()).value();
+        REQUIRE(source.warnings.size() == 1);
+        CHECK(says(source.warnings[0], "image 0: 16384 x 16384 is more than 67108864 pixels"));
     }
 
     TEST_CASE("one bad node, mesh or image is named and left out, with strict the file is refused") {

@@ -16,10 +16,9 @@ SceneSource town(std::uint64_t seed, std::uint32_t instances = 0) {
     assets::LoadOptions options;
     options.seed = seed;
     options.instances = instances;
-    auto source = load_scene("town", options);
-    REQUIRE(source.has_value());
-    source->scene.update();
-    return std::move(*source);
+    auto source = load_scene("town", options).value();
+    source.scene.update();
+    return source;
 }
 
 std::size_t triangles(const scene::Scene& scene) {

@@ -99,15 +99,13 @@ TEST_SUITE("assets/udmf") {
                                            {"PLAYPAL", "x"},
                                            {"MAP03", ""},
                                            {"TEXTMAP", text}});
-        const auto names = assets::list_levels(file);
-        REQUIRE(names.has_value());
-        CHECK(*names == std::vector<std::string>{"MAP02", "E1M1", "MAP03"});
-        for (const std::string& name : *names) {
-            const auto level = assets::read_level(file, name);
-            REQUIRE_MESSAGE(level.has_value(), level.error().message);
-            CHECK(level->name == name);
-            CHECK(level->lines.size() == 8);
-            CHECK(level->lines[0].left == assets::kNoSide);
+        const auto names = assets::list_levels(file).value();
+        CHECK(names == std::vector<std::string>{"MAP02", "E1M1", "MAP03"});
+        for (const std::string& name : names) {
+            const auto level = assets::read_level(file, name).value();
+            CHECK(level.name == name);
+            CHECK(level.lines.size() == 8);
+            CHECK(level.lines[0].left == assets::kNoSide);
         }
     }
 
@@ -131,16 +129,15 @@ TEST_SUITE("assets/udmf") {
             for (int i = 0; i < corners; ++i)
                 text +=
                     "linedef{v1=" + std::to_string(i) + ";v2=" + std::to_string((i + 1) % corners) + ";sidefront=0;}";
-            const auto level = assets::read_udmf(text + "sidedef{sector=0;}sector{heightceiling=0100;}");
-            REQUIRE_MESSAGE(level.has_value(), level.error().message);
-            CHECK(level->sectors[0].ceiling == 64);
-            CHECK(level->sides[0].middle == "-");
+            const auto level = assets::read_udmf(text + "sidedef{sector=0;}sector{heightceiling=0100;}").value();
+            CHECK(level.sectors[0].ceiling == 64);
+            CHECK(level.sides[0].middle == "-");
             double area = 0.0, found = 0.0;
             for (std::size_t i = 0; i < points.size(); ++i) {
                 const auto &a = points[i], &b = points[(i + 1) % points.size()];
                 area -= 0.5 * ((a[0] - cx) * b[1] - a[1] * (b[0] - cx));
             }
-            const auto sectors = sector_polygons(*level);
+            const auto sectors = sector_polygons(level);
             REQUIRE(sectors[0].polygons.size() == 1);
             const auto& ring = sectors[0].polygons[0].points;
             for (std::size_t i = 0; i < ring.size(); ++i) {
@@ -152,12 +149,13 @@ TEST_SUITE("assets/udmf") {
     }
 
     TEST_CASE("a sector whose lines all face away from it is taken to lie inside them") {
-        const auto level = assets::read_udmf(
-            "vertex{x=0;y=0;}vertex{x=64;y=0;}vertex{x=64;y=64;}vertex{x=0;y=64;}"
-            "linedef{v1=0;v2=1;sidefront=0;}linedef{v1=1;v2=2;sidefront=0;}linedef{v1=2;v2=3;sidefront=0;}"
-            "linedef{v1=3;v2=0;sidefront=0;}sidedef{sector=0;}sector{heightceiling=128;}");
-        REQUIRE(level.has_value());
-        const auto sectors = sector_polygons(*level);
+        const auto level =
+            assets::read_udmf(
+                "vertex{x=0;y=0;}vertex{x=64;y=0;}vertex{x=64;y=64;}vertex{x=0;y=64;}"
+                "linedef{v1=0;v2=1;sidefront=0;}linedef{v1=1;v2=2;sidefront=0;}linedef{v1=2;v2=3;sidefront=0;}"
+                "linedef{v1=3;v2=0;sidefront=0;}sidedef{sector=0;}sector{heightceiling=128;}")
+                .value();
+        const auto sectors = sector_polygons(level);
         CHECK(sectors[0].problem.empty());
         REQUIRE(sectors[0].polygons.size() == 1);
         CHECK(sectors[0].polygons[0].points.size() == 4);

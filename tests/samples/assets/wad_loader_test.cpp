@@ -198,11 +198,10 @@ TEST_SUITE("assets/wad_loader") {
         }
         Wad sky;
         sky.sectors = sector(0, 128, "FLOOR4_8", "F_SKY1");
-        const auto source = load_wad(sky.file());
-        REQUIRE(source.has_value());
-        REQUIRE_FALSE(source->rooms.empty());
-        CHECK(source->rooms[0].has_floor);
-        CHECK_FALSE(source->rooms[0].has_ceiling);
+        const auto source = load_wad(sky.file()).value();
+        REQUIRE_FALSE(source.rooms.empty());
+        CHECK(source.rooms[0].has_floor);
+        CHECK_FALSE(source.rooms[0].has_ceiling);
     }
 
     TEST_CASE("rings that touch in a point are separate rings") {
@@ -238,14 +237,12 @@ TEST_SUITE("assets/wad_loader") {
         if (!stream) return;
         std::stringstream bytes;
         bytes << stream.rdbuf();
-        const auto names = assets::list_levels(bytes.str());
-        REQUIRE(names.has_value());
-        CHECK(names->size() == 32);
+        const auto names = assets::list_levels(bytes.str()).value();
+        CHECK(names.size() == 32);
         std::size_t sectors = 0, lost = 0;
-        for (const std::string& name : *names) {
-            const auto level = assets::read_level(bytes.str(), name);
-            REQUIRE(level.has_value());
-            for (const auto& sector : sector_polygons(*level)) {
+        for (const std::string& name : names) {
+            const auto level = assets::read_level(bytes.str(), name).value();
+            for (const auto& sector : sector_polygons(level)) {
                 ++sectors;
                 lost += sector.polygons.empty() ? 1u : 0u;
             }

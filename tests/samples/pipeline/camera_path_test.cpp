@@ -37,22 +37,20 @@ TEST_SUITE("pipeline/camera_path") {
         camera.position = {1e7 + 0.1, -1.0 / 3.0, 2e-9};
         camera.forward = {0.1, 0.2, -0.7};
         camera.far_distance = INFINITY;
-        const auto again = camera_from_json(parsed(to_json(camera).dump()), 0);
-        REQUIRE(again.has_value());
-        CHECK(again->position == camera.position);
-        CHECK(again->forward == camera.forward);
-        CHECK(std::isinf(again->far_distance));
-        CHECK(again->projection == Projection::perspective);
+        const auto again = camera_from_json(parsed(to_json(camera).dump()), 0).value();
+        CHECK(again.position == camera.position);
+        CHECK(again.forward == camera.forward);
+        CHECK(std::isinf(again.far_distance));
+        CHECK(again.projection == Projection::perspective);
     }
 
     TEST_CASE("an orthographic camera survives its JSON, and its height must be one") {
         Camera camera;
         camera.projection = Projection::orthographic;
         camera.height = 1.0 / 3.0;
-        const auto again = camera_from_json(parsed(to_json(camera).dump()), 0);
-        REQUIRE(again.has_value());
-        CHECK(again->projection == Projection::orthographic);
-        CHECK(again->height == camera.height);
+        const auto again = camera_from_json(parsed(to_json(camera).dump()), 0).value();
+        CHECK(again.projection == Projection::orthographic);
+        CHECK(again.height == camera.height);
         CHECK(error_of(camera_from_json(parsed(R"({"height": "tall"})"), 8)).code == ErrorCode::parse);
         CHECK(error_of(camera_from_json(parsed(R"({"height": -1})"), 9)).code == ErrorCode::out_of_range);
     }
@@ -61,12 +59,11 @@ TEST_SUITE("pipeline/camera_path") {
         for (const char* kind : {"orbit", "street", "random"})
             for (const Aabb& bounds : {Aabb{{-50, 0, -30}, {50, 20, 30}}, Aabb{{1e6, 5, 5}, {1e6, 5, 5}}}) {
                 const PathOptions options{.kind = kind, .frames = 37, .seed = 3};
-                const auto path = make_camera_path(options, bounds, {});
-                REQUIRE(path.has_value());
-                CHECK(path->cameras.size() == 37);
-                CHECK(path->scene_frames.back() == 36);
-                for (const Camera& camera : path->cameras) CHECK(validate(camera).has_value());
-                CHECK(make_camera_path(options, bounds, {})->cameras.back().position == path->cameras.back().position);
+                const auto path = make_camera_path(options, bounds, {}).value();
+                CHECK(path.cameras.size() == 37);
+                CHECK(path.scene_frames.back() == 36);
+                for (const Camera& camera : path.cameras) CHECK(validate(camera).has_value());
+                CHECK(make_camera_path(options, bounds, {})->cameras.back().position == path.cameras.back().position);
             }
     }
 

@@ -44,9 +44,8 @@ TEST_SUITE("pipeline/occlusion") {
         for (const bool moves : {true, false}) {
             CAPTURE(moves);
             Yard yard;
-            auto pipeline = Pipeline::create(yard.scene, {}, kWithOcclusion, serial_executor());
-            REQUIRE(pipeline.has_value());
-            auto frame = pipeline->run(Camera{});
+            auto pipeline = Pipeline::create(yard.scene, {}, kWithOcclusion, serial_executor()).value();
+            auto frame = pipeline.run(Camera{});
             REQUIRE(frame.has_value());
             REQUIRE(frame->occlusion.has_value());
             CHECK(frame->visible_ids == yard.all);
@@ -59,7 +58,7 @@ TEST_SUITE("pipeline/occlusion") {
             else
                 REQUIRE(yard.scene.set_instance_layers(yard.wall, 0).has_value());
             yard.scene.update();
-            frame = pipeline->run(Camera{});
+            frame = pipeline.run(Camera{});
             REQUIRE(frame.has_value());
             for (const scene::InstanceId i : yard.behind)
                 CHECK(
@@ -101,15 +100,14 @@ TEST_SUITE("pipeline/occlusion") {
             }
             CHECK(triangles == 36 + 11);  // each whole strip is cut on both sides, but for the first on its left
             const bake::BakedOccluders baked = to_baked(found);
-            const auto file = bake::bake(yard.scene, serial_executor(), {.occluders = &baked});
-            REQUIRE(file.has_value());
+            const auto file = bake::bake(yard.scene, serial_executor(), {.occluders = &baked}).value();
             const SceneOccluders back =
-                scene_occluders_from(yard.scene, *bake::BakedScene::from_memory(*file).value().occluders());
+                scene_occluders_from(yard.scene, *bake::BakedScene::from_memory(file).value().occluders());
             for (const SceneOccluders& occluders : {found, back}) {
                 auto pipeline = Pipeline::create(yard.scene, {}, kWithOcclusion, serial_executor(),
-                                                 std::make_shared<const SceneOccluders>(occluders));
-                REQUIRE(pipeline.has_value());
-                const auto frame = pipeline->run(Camera{});
+                                                 std::make_shared<const SceneOccluders>(occluders))
+                                    .value();
+                const auto frame = pipeline.run(Camera{});
                 for (const scene::InstanceId i : yard.behind)
                     CHECK_FALSE(std::binary_search(frame->occlusion->visible_ids.begin(),
                                                    frame->occlusion->visible_ids.end(), i));
@@ -141,9 +139,9 @@ TEST_SUITE("pipeline/occlusion") {
         CHECK(&pipeline->world() == world);
         // Known ones are taken: another pipeline with none of them hides nothing.
         auto knows_none = Pipeline::create(yard.scene, {}, kWithOcclusion, serial_executor(),
-                                           std::make_shared<const SceneOccluders>());
-        REQUIRE(knows_none.has_value());
-        CHECK(knows_none->run(Camera{})->occlusion->visible_ids == yard.all);
+                                           std::make_shared<const SceneOccluders>())
+                              .value();
+        CHECK(knows_none.run(Camera{})->occlusion->visible_ids == yard.all);
     }
 
     TEST_CASE("collisions switched off and on again are those of a new pipeline, and movers alone have them") {
@@ -153,16 +151,15 @@ TEST_SUITE("pipeline/occlusion") {
             REQUIRE(scene.add_instance(*scene.add_node(scene::kNone, {glm::dmat3(1.0), {0.8 * i, 0.0, 0.0}}), *cube));
         scene.update();
         for (const BoundsKind kind : {BoundsKind::obb_perimeter, BoundsKind::aabb}) {
-            auto pipeline = Pipeline::create(scene, {0, 1, 2}, {.bounds = kind}, serial_executor());
-            REQUIRE(pipeline.has_value());
-            const auto before = pipeline->run(Camera{});
+            auto pipeline = Pipeline::create(scene, {0, 1, 2}, {.bounds = kind}, serial_executor()).value();
+            const auto before = pipeline.run(Camera{});
             CHECK(before->colliding_pairs == 2);
-            REQUIRE(pipeline->set_options({.bounds = kind, .collide = false}).has_value());
-            const auto off = pipeline->run(Camera{});
+            REQUIRE(pipeline.set_options({.bounds = kind, .collide = false}).has_value());
+            const auto off = pipeline.run(Camera{});
             CHECK(off->colliding_pairs == 0);
             CHECK(off->pairs_tested == 0);
-            REQUIRE(pipeline->set_options({.bounds = kind}).has_value());
-            const auto again = pipeline->run(Camera{});
+            REQUIRE(pipeline.set_options({.bounds = kind}).has_value());
+            const auto again = pipeline.run(Camera{});
             CHECK(again->colliding_ids == before->colliding_ids);
             CHECK(again->pairs_tested == before->pairs_tested);
         }
@@ -172,12 +169,10 @@ TEST_SUITE("pipeline/occlusion") {
         Yard yard;
         const SceneOccluders found = find_scene_occluders(yard.scene, serial_executor());
         const bake::BakedOccluders baked = to_baked(found);
-        const auto file = bake::bake(yard.scene, serial_executor(), {.occluders = &baked});
-        REQUIRE(file.has_value());
-        const auto loaded = bake::BakedScene::from_memory(*file);
-        REQUIRE(loaded.has_value());
-        REQUIRE(loaded->occluders().has_value());
-        const SceneOccluders back = scene_occluders_from(yard.scene, *loaded->occluders());
+        const auto file = bake::bake(yard.scene, serial_executor(), {.occluders = &baked}).value();
+        const auto loaded = bake::BakedScene::from_memory(file).value();
+        REQUIRE(loaded.occluders().has_value());
+        const SceneOccluders back = scene_occluders_from(yard.scene, *loaded.occluders());
         REQUIRE(back.objects.size() == found.objects.size());
         REQUIRE(back.kinds.size() == found.kinds.size());
         for (std::size_t k = 0; k < found.kinds.size(); ++k) {
@@ -196,9 +191,9 @@ TEST_SUITE("pipeline/occlusion") {
             }
         }
         auto pipeline = Pipeline::create(yard.scene, {}, kWithOcclusion, serial_executor(),
-                                         std::make_shared<const SceneOccluders>(back));
-        REQUIRE(pipeline.has_value());
-        CHECK(pipeline->run(Camera{})->occlusion->visible_ids == std::vector<std::uint32_t>{yard.wall, yard.beside});
+                                         std::make_shared<const SceneOccluders>(back))
+                            .value();
+        CHECK(pipeline.run(Camera{})->occlusion->visible_ids == std::vector<std::uint32_t>{yard.wall, yard.beside});
     }
 
     TEST_CASE("meshes on one node are one occluding object, and what is not drawn is no part of it") {
@@ -223,10 +218,8 @@ TEST_SUITE("pipeline/occlusion") {
 
     TEST_CASE("a right frame has no mismatch, and every kind of wrong occlusion has one") {
         Yard yard;
-        auto pipeline = Pipeline::create(yard.scene, {}, kWithOcclusion, serial_executor());
-        REQUIRE(pipeline.has_value());
-        const auto frame = pipeline->run(Camera{});
-        REQUIRE(frame.has_value());
+        auto pipeline = Pipeline::create(yard.scene, {}, kWithOcclusion, serial_executor()).value();
+        const auto frame = pipeline.run(Camera{}).value();
         const std::vector<OwnerTriangle> owners{{yard.wall, 3}, {yard.wall, 4}, {yard.beside, 30}};
         std::vector<OwnerTriangle> more_owners = owners;
         more_owners.push_back({yard.behind[0], 40});
@@ -236,18 +229,18 @@ TEST_SUITE("pipeline/occlusion") {
             verify_occlusion(SceneDrawables(yard.scene), {of_all, owners}, changed, true, tampered, verification);
             return verification;
         };
-        CHECK(check(*frame, owners, 0).mismatches() == 0);
-        CHECK(check(*frame, more_owners, 0).hidden_but_seen == 1);
-        CHECK(check(*frame, std::span(owners).first(1), 0).hidden_but_seen == 2);
-        CHECK(check(*frame, owners, 7).changed_pictures == 1);
-        CHECK(check(*frame, owners, 7).changed_pixels == 7);
-        FrameStatistics miscounted = *frame;
+        CHECK(check(frame, owners, 0).mismatches() == 0);
+        CHECK(check(frame, more_owners, 0).hidden_but_seen == 1);
+        CHECK(check(frame, std::span(owners).first(1), 0).hidden_but_seen == 2);
+        CHECK(check(frame, owners, 7).changed_pictures == 1);
+        CHECK(check(frame, owners, 7).changed_pixels == 7);
+        FrameStatistics miscounted = frame;
         ++miscounted.occlusion->triangles_submitted;
         CHECK(check(miscounted, owners, 0).wrong_counts == 1);
-        FrameStatistics more = *frame;
+        FrameStatistics more = frame;
         more.visible_ids.erase(more.visible_ids.begin());
         CHECK(check(more, owners, 0).wrong_verdicts == 1);
-        FrameStatistics misdrawn = *frame;
+        FrameStatistics misdrawn = frame;
         misdrawn.occlusion->gpu = render::GpuCounters{24, 24, misdrawn.occlusion->triangles_clipped + 1, 0};
         CHECK(check(misdrawn, owners, 0).wrong_counts == 1);
     }
@@ -262,12 +255,11 @@ TEST_SUITE("pipeline/occlusion") {
             return;
         }
         DrawList list(yard.scene, {});
-        auto rasterizer = render::Rasterizer::create(*device, {.width = 320, .height = 180});
-        REQUIRE(rasterizer.has_value());
-        REQUIRE(rasterizer->set_geometry(list.vertices(), list.indices()).has_value());
+        auto rasterizer = render::Rasterizer::create(*device, {.width = 320, .height = 180}).value();
+        REQUIRE(rasterizer.set_geometry(list.vertices(), list.indices()).has_value());
         OwnerPicture picture;
         list.select(yard.all, Camera{});
-        REQUIRE(picture.draw(*rasterizer, 0, list, Camera{}).has_value());
+        REQUIRE(picture.draw(rasterizer, 0, list, Camera{}).has_value());
         CHECK(std::vector(picture.instances().begin(), picture.instances().end()) ==
               std::vector<scene::InstanceId>{yard.wall, yard.beside});
         const std::vector<OwnerTriangle> with_wall(picture.triangles().begin(), picture.triangles().end());
@@ -277,13 +269,13 @@ TEST_SUITE("pipeline/occlusion") {
         // What the wall hides can be left out: the same triangles own pixels, under the same numbers.
         const std::vector<scene::InstanceId> shown{yard.wall, yard.beside};
         list.select(shown, Camera{});
-        REQUIRE(picture.draw(*rasterizer, 0, list, Camera{}).has_value());
+        REQUIRE(picture.draw(rasterizer, 0, list, Camera{}).has_value());
         CHECK(std::vector(picture.triangles().begin(), picture.triangles().end()) == with_wall);
         // Without the wall the others own pixels.
         std::vector<scene::InstanceId> rest = yard.all;
         rest.erase(std::find(rest.begin(), rest.end(), yard.wall));
         list.select(rest, Camera{});
-        REQUIRE(picture.draw(*rasterizer, 0, list, Camera{}).has_value());
+        REQUIRE(picture.draw(rasterizer, 0, list, Camera{}).has_value());
         CHECK(std::vector(picture.instances().begin(), picture.instances().end()) == rest);
     }
 }

@@ -125,17 +125,15 @@ Walked walk_through(const assets::SceneSource& source, std::uint32_t frames = 40
     const Street street = street_of(source, focus);
     PathOptions options{.kind = "street", .frames = frames};
     street.set(options);
-    const auto path = make_camera_path(options, focus, street.walk);
-    REQUIRE(path.has_value());
-    const auto flat = assets::flat_scene(source);
-    REQUIRE(flat.has_value());
+    const auto path = make_camera_path(options, focus, street.walk).value();
+    const auto flat = assets::flat_scene(source).value();
     Walked walked;
     walked.remark = street.remark;
-    for (const Camera& camera : path->cameras) {
-        const double below = distance_along_y(flat->mesh, camera.position, -1.0);
+    for (const Camera& camera : path.cameras) {
+        const double below = distance_along_y(flat.mesh, camera.position, -1.0);
         walked.least_over_floor = std::min(walked.least_over_floor, below);
         walked.most_over_floor = std::max(walked.most_over_floor, below);
-        walked.under_roof += std::isfinite(distance_along_y(flat->mesh, camera.position, 1.0));
+        walked.under_roof += std::isfinite(distance_along_y(flat.mesh, camera.position, 1.0));
         if (!walked.eyes.empty()) walked.length += glm::distance(walked.eyes.back(), camera.position);
         walked.eyes.push_back(camera.position);
         CHECK(validate(camera).has_value());

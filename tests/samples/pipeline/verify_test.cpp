@@ -35,34 +35,33 @@ TEST_SUITE("pipeline/verify") {
         const PipelineOptions options;
         auto pipeline = Pipeline::create(row.scene, row.all, options, serial_executor());
         REQUIRE(pipeline.has_value());
-        auto frame = pipeline->run(Camera{});
-        REQUIRE(frame.has_value());
-        CHECK(frame->colliding_pairs == 19);
-        CHECK(frame->visible > 5);
-        CHECK(frame->visible < 20);
+        auto frame = pipeline->run(Camera{}).value();
+        CHECK(frame.colliding_pairs == 19);
+        CHECK(frame.visible > 5);
+        CHECK(frame.visible < 20);
 
         const auto mismatches = [&](const FrameStatistics& tampered) {
             Verification verification;
             verify_frame(row.scene, *pipeline, options, tampered, true, verification);
             return verification;
         };
-        CHECK(mismatches(*frame).mismatches() == 0);
+        CHECK(mismatches(frame).mismatches() == 0);
 
-        FrameStatistics lost_pair = *frame;
+        FrameStatistics lost_pair = frame;
         lost_pair.colliding_ids.pop_back();
         CHECK(mismatches(lost_pair).wrong_pairs > 0);
-        FrameStatistics invented_pair = *frame;
+        FrameStatistics invented_pair = frame;
         invented_pair.colliding_ids.back() = {0, 19};
         CHECK(mismatches(invented_pair).wrong_pairs > 0);
-        FrameStatistics miscounted = *frame;
+        FrameStatistics miscounted = frame;
         ++miscounted.triangles_passed;
         CHECK(mismatches(miscounted).wrong_counts > 0);
-        FrameStatistics misdrawn = *frame;
-        misdrawn.gpu = render::GpuCounters{frame->triangles_submitted, frame->triangles_submitted,
-                                           frame->triangles_clipped + 1, 0};
+        FrameStatistics misdrawn = frame;
+        misdrawn.gpu =
+            render::GpuCounters{frame.triangles_submitted, frame.triangles_submitted, frame.triangles_clipped + 1, 0};
         CHECK(mismatches(misdrawn).wrong_counts == 1);
         // Another camera than the one the pipeline answered for: verdicts and counts cannot fit.
-        FrameStatistics elsewhere = *frame;
+        FrameStatistics elsewhere = frame;
         elsewhere.camera.forward = {0.0, 0.0, 1.0};
         CHECK(mismatches(elsewhere).culled_but_visible > 0);
         CHECK(mismatches(elsewhere).wrong_verdicts > 0);
@@ -84,23 +83,22 @@ TEST_SUITE("pipeline/verify") {
                 const Aabb focus = focus_of(row.scene);
                 CHECK(focus.max.x == 1.0);
                 const PipelineOptions options{.bounds = kind, .cull = mode};
-                auto pipeline = Pipeline::create(row.scene, {}, options, serial_executor());
-                REQUIRE_MESSAGE(pipeline.has_value(), pipeline.error().message);
-                auto frame = pipeline->run(Camera{});
+                auto pipeline = Pipeline::create(row.scene, {}, options, serial_executor()).value();
+                auto frame = pipeline.run(Camera{});
                 REQUIRE(frame.has_value());
-                CHECK(pipeline->verdicts()[*beyond] == cull::Verdict::outside);
-                CHECK(pipeline->verdicts()[*point] == cull::Verdict::outside);
+                CHECK(pipeline.verdicts()[*beyond] == cull::Verdict::outside);
+                CHECK(pipeline.verdicts()[*point] == cull::Verdict::outside);
                 Verification verification;
-                verify_frame(row.scene, *pipeline, options, *frame, true, verification);
+                verify_frame(row.scene, pipeline, options, *frame, true, verification);
                 CHECK(verification.mismatches() == 0);
                 // Back again.
                 REQUIRE(row.scene.set_local(*farthest, {glm::dmat3(1e-30), glm::dvec3(0.0)}).has_value());
                 row.scene.update();
-                frame = pipeline->run(Camera{});
+                frame = pipeline.run(Camera{});
                 REQUIRE(frame.has_value());
-                CHECK(pipeline->verdicts()[*beyond] != cull::Verdict::outside);
+                CHECK(pipeline.verdicts()[*beyond] != cull::Verdict::outside);
                 Verification again;
-                verify_frame(row.scene, *pipeline, options, *frame, true, again);
+                verify_frame(row.scene, pipeline, options, *frame, true, again);
                 CHECK(again.mismatches() == 0);
             }
     }

@@ -22,9 +22,8 @@ using namespace crofton::viewer;
 namespace {
 
 void place(scene::Scene& scene, scene::MeshId mesh, const Transform& transform) {
-    const auto node = scene.add_node(scene::kNone, transform);
-    REQUIRE(node);
-    REQUIRE(scene.add_instance(*node, mesh));
+    const auto node = scene.add_node(scene::kNone, transform).value();
+    REQUIRE(scene.add_instance(node, mesh));
 }
 
 // Squares across the z axis at the given depths, one instance each.
@@ -33,9 +32,8 @@ scene::Scene squares(std::initializer_list<double> depths) {
     TriangleMesh mesh;
     mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
     mesh.indices = {0, 1, 2, 0, 2, 3};
-    const auto id = result.add_mesh(mesh);
-    REQUIRE(id);
-    for (const double z : depths) place(result, *id, {glm::dmat3(1.0), {0.0, 0.0, z}});
+    const auto id = result.add_mesh(mesh).value();
+    for (const double z : depths) place(result, id, {glm::dmat3(1.0), {0.0, 0.0, z}});
     result.update();
     return result;
 }
@@ -48,9 +46,7 @@ struct Picker {
     explicit Picker(const scene::Scene& scene, std::vector<scene::InstanceId> movers = {})
         : pipeline(make(scene, std::move(movers))), shapes(scene) {}
     static pipeline::Pipeline make(const scene::Scene& scene, std::vector<scene::InstanceId> movers) {
-        auto made = pipeline::Pipeline::create(scene, std::move(movers), {}, serial_executor());
-        REQUIRE(made);
-        return std::move(*made);
+        return pipeline::Pipeline::create(scene, std::move(movers), {}, serial_executor()).value();
     }
     std::optional<Pick> operator()(std::span<const scene::InstanceId> candidates, const Camera& camera,
                                    const glm::dvec2& cursor) {
@@ -84,14 +80,13 @@ struct Uniform {
 // Cubes that are turned, scaled and sheared, with their middles in the box.
 std::vector<scene::InstanceId> scatter_cubes(scene::Scene& scene, Uniform& uniform, scene::InstanceId count,
                                              const Aabb& box) {
-    const auto mesh = scene.add_mesh(testing::cube_mesh(0.5f));
-    REQUIRE(mesh);
+    const auto mesh = scene.add_mesh(testing::cube_mesh(0.5f)).value();
     std::vector<scene::InstanceId> all;
     for (scene::InstanceId i = 0; i < count; ++i) {
         Transform transform;
         for (int k = 0; k < 9; ++k) transform.linear[k / 3][k % 3] = uniform(-1.5, 1.5);
         for (int k = 0; k < 3; ++k) transform.translation[k] = uniform(box.min[k], box.max[k]);
-        place(scene, *mesh, transform);
+        place(scene, mesh, transform);
         all.push_back(i);
     }
     scene.update();
@@ -115,14 +110,13 @@ TEST_SUITE("viewer/picking") {
         Picker pick_at(scene);
         const Camera camera;
         const scene::InstanceId all[] = {0, 1, 2};
-        const auto hit = pick_at(all, camera, {0.01, -0.05});
-        REQUIRE(hit);
-        CHECK(hit->instance == 1);
-        CHECK(hit->triangle == 0);  // below the diagonal
-        CHECK(hit->at.z == doctest::Approx(-4.0));
-        CHECK(hit->distance == doctest::Approx(glm::length(hit->at)));
+        const auto hit = pick_at(all, camera, {0.01, -0.05}).value();
+        CHECK(hit.instance == 1);
+        CHECK(hit.triangle == 0);  // below the diagonal
+        CHECK(hit.at.z == doctest::Approx(-4.0));
+        CHECK(hit.distance == doctest::Approx(glm::length(hit.at)));
         // The cursor's tangent, times the depth.
-        CHECK(hit->at.y == doctest::Approx(-0.05 * std::tan(0.5 * camera.fov_y) * 4.0));
+        CHECK(hit.at.y == doctest::Approx(-0.05 * std::tan(0.5 * camera.fov_y) * 4.0));
         // What is not drawn is not picked: the next one is.
         const scene::InstanceId without_nearest[] = {0, 2};
         CHECK(pick_at(without_nearest, camera, {0.01, -0.05})->instance == 2);
@@ -206,12 +200,11 @@ TEST_SUITE("viewer/instance_shapes") {
     // Two cubes that meet and a third far away.
     scene::Scene cubes(const glm::dmat3& linear_a, const glm::dmat3& linear_b) {
         scene::Scene scene;
-        const auto mesh = scene.add_mesh(testing::cube_mesh(0.5f));
-        REQUIRE(mesh);
+        const auto mesh = scene.add_mesh(testing::cube_mesh(0.5f)).value();
         const glm::dvec3 at(100.0, 5.0, -3.0);
-        place(scene, *mesh, {linear_a, at});
-        place(scene, *mesh, {linear_b, at + glm::dvec3(0.3, 0.45, 0.1)});
-        place(scene, *mesh, {linear_b, at + glm::dvec3(9.0, 0.0, 0.0)});
+        place(scene, mesh, {linear_a, at});
+        place(scene, mesh, {linear_b, at + glm::dvec3(0.3, 0.45, 0.1)});
+        place(scene, mesh, {linear_b, at + glm::dvec3(9.0, 0.0, 0.0)});
         scene.update();
         return scene;
     }

@@ -49,12 +49,12 @@ TEST_SUITE("viewer/script") {
         CHECK(parse_script("{\"events\": []}")->empty());
     }
     TEST_CASE("a key is pressed and let go, held keys are held") {
-        const auto actions = parse_script(R"({"events": [{"frame": 2, "key": "F"}, {"frame": 3, "key_down": "W"}]})");
-        REQUIRE(actions);
-        REQUIRE(actions->size() == 3);
-        CHECK((*actions)[0].event.kind == Event::Kind::key_down);
-        CHECK((*actions)[1].event.kind == Event::Kind::key_up);
-        CHECK((*actions)[2].frame == 3);
+        const auto actions =
+            parse_script(R"({"events": [{"frame": 2, "key": "F"}, {"frame": 3, "key_down": "W"}]})").value();
+        REQUIRE(actions.size() == 3);
+        CHECK(actions[0].event.kind == Event::Kind::key_down);
+        CHECK(actions[1].event.kind == Event::Kind::key_up);
+        CHECK(actions[2].frame == 3);
     }
 }
 

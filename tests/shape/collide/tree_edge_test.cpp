@@ -88,24 +88,23 @@ TEST_SUITE("collide/tree edges") {
             // Far away a cluster may be smaller than what its coordinates are rounded to.
             const double size = std::exp(random.number(offset > 1e6 ? -16.0 : -5.0, 3.0));
             const auto boxes = cluster(random, middle, size, size * std::exp(random.number(-10.0, 1.0)));
-            const auto tree = boxtree::BoxTree::build(boxes);
-            REQUIRE(tree.has_value());
+            const auto tree = boxtree::BoxTree::build(boxes).value();
             const Obb& box = boxes[random.index(static_cast<unsigned>(boxes.size()))];
             // Beside one face, so that one coordinate decides.
             glm::dvec3 place = box.center;
             const int axis = static_cast<int>(random.index(3));
             place[axis] += (random.index(2) ? 1.0 : -1.0) * (box.half_extents[axis] + size * random.number(0.01, 2.0));
             const double most = 1e3 * size + 1.0;
-            check_growing(*tree, box, float(most), [&](float half) {
+            check_growing(tree, box, float(most), [&](float half) {
                 Obb body;
                 body.center = place;
                 body.half_extents = glm::vec3(half);
                 return body;
             });
-            check_growing(*tree, box, most, [&](double radius) { return Sphere{place, radius}; });
+            check_growing(tree, box, most, [&](double radius) { return Sphere{place, radius}; });
             const glm::dvec3 along = random.number(0.0, size) * glm::dvec3(axis == 0, axis == 1, axis == 2);
             const double side = place[axis] > box.center[axis] ? 1.0 : -1.0;
-            check_growing(*tree, box, most, [&](double radius) {
+            check_growing(tree, box, most, [&](double radius) {
                 return Capsule{place, place + side * along, radius};
             });
         }
@@ -117,8 +116,7 @@ TEST_SUITE("collide/tree edges") {
             const glm::dvec3 middle = (trial % 2 ? 0.0 : 1e8) * glm::dvec3(1.0, -0.7, 0.3);
             const double size = std::exp(random.number(-16.0, 3.0));
             const auto boxes = cluster(random, middle, size, size * std::exp(random.number(-10.0, 1.0)));
-            const auto tree = boxtree::BoxTree::build(boxes);
-            REQUIRE(tree.has_value());
+            const auto tree = boxtree::BoxTree::build(boxes).value();
             const auto item = random.index(static_cast<unsigned>(boxes.size()));
             const int axis = static_cast<int>(random.index(3));
             // A point beside one face: its distance is a difference of two coordinates, exact in rational arithmetic,
@@ -129,7 +127,7 @@ TEST_SUITE("collide/tree edges") {
             if (!(gap > 0.0)) continue;
             for (const double distance : {gap, std::nextafter(gap, 1e300)}) {
                 bool found = false;
-                visit_near({place, place}, distance, *tree, [&](boxtree::ItemId i) {
+                visit_near({place, place}, distance, tree, [&](boxtree::ItemId i) {
                     found = found || i == item;
                     return distance;
                 });
@@ -152,13 +150,12 @@ TEST_SUITE("collide/tree edges") {
             boxes[2].center[axis] =
                 (random.index(2) ? 0.5 : 1.5) * unit * (1.0 + 0x1p-40) * (random.index(2) ? 1.0 : -1.0);
             boxes[2].half_extents[axis] = float(unit * 0x1p-25 * random.number(0.1, 4.0));
-            const auto tree = boxtree::BoxTree::build(boxes);
-            REQUIRE(tree.has_value());
+            const auto tree = boxtree::BoxTree::build(boxes).value();
             for (const double side : {1.0, -1.0}) {
                 glm::dvec3 end(0.0);
                 end[axis] = boxes[2].center[axis] + side * double{boxes[2].half_extents[axis]};
                 bool found = false;
-                visit_near({end, end}, 0.0, *tree, [&](boxtree::ItemId i) {
+                visit_near({end, end}, 0.0, tree, [&](boxtree::ItemId i) {
                     found = found || i == 2;
                     return 0.0;
                 });
@@ -173,9 +170,8 @@ TEST_SUITE("collide/tree edges") {
             const glm::dvec3 middle = (trial % 3 ? 0.0 : 1e6) * glm::dvec3(1.0, -0.7, 0.3);
             const double size = std::exp(random.number(-5.0, 3.0));
             const auto boxes = cluster(random, middle, size, size * std::exp(random.number(-10.0, 1.0)));
-            const auto tree = boxtree::BoxTree::build(boxes);
-            REQUIRE(tree.has_value());
-            check_rays(random, *tree, boxes[random.index(static_cast<unsigned>(boxes.size()))], size);
+            const auto tree = boxtree::BoxTree::build(boxes).value();
+            check_rays(random, tree, boxes[random.index(static_cast<unsigned>(boxes.size()))], size);
         }
     }
 

@@ -34,9 +34,7 @@ oracle::Crowd crowd_of(std::size_t count, double offset, std::uint64_t seed) {
 }
 
 boxtree::BoxTree tree_of(const oracle::Crowd& crowd) {
-    auto tree = boxtree::BoxTree::build(crowd.boxes, crowd.layers);
-    REQUIRE(tree.has_value());
-    return std::move(*tree);
+    return boxtree::BoxTree::build(crowd.boxes, crowd.layers).value();
 }
 
 // Every box asked, one after the other.

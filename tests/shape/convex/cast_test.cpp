@@ -241,10 +241,10 @@ TEST_SUITE("convex/cast") {
         const RigidTransform there = at({2.5153967513469979, 0.67383012239588425, 1.8703839550144039});
         REQUIRE(intersects({needle, lying}, {box, there}));
         const glm::dvec3 away(0.875, -6.25, -15.75);
-        const auto now = cast({needle, lying}, {}, {box, there}, flying(away), {.duration = 2.0, .tolerance = 1e-4});
-        REQUIRE(now.has_value());
-        CHECK(now->result == CastResult::hit);
-        CHECK(now->time == 0.0);
+        const auto now =
+            cast({needle, lying}, {}, {box, there}, flying(away), {.duration = 2.0, .tolerance = 1e-4}).value();
+        CHECK(now.result == CastResult::hit);
+        CHECK(now.time == 0.0);
         int hits = 0;
         for (int i = 0; i < 200; ++i) {
             const double back = 0.5 + 0.01 * i;
@@ -281,10 +281,9 @@ TEST_SUITE("convex/cast") {
         const Motion motion_a{{10.625, 10.625, 10.625}, {}, glm::dvec3(-0.125)},
             motion_b{glm::dvec3(-0.125), {0, 0, 3.8125}, {}};
         const CastOptions options{.duration = 3.46875, .tolerance = 0.015625};
-        const auto impact = cast({needle, a}, motion_a, {cone, b}, motion_b, options);
-        REQUIRE(impact.has_value());
-        REQUIRE(impact->result == CastResult::hit);
-        const RigidTransform now_a = moved(a, motion_a, impact->time), now_b = moved(b, motion_b, impact->time);
+        const auto impact = cast({needle, a}, motion_a, {cone, b}, motion_b, options).value();
+        REQUIRE(impact.result == CastResult::hit);
+        const RigidTransform now_a = moved(a, motion_a, impact.time), now_b = moved(b, motion_b, impact.time);
         CHECK(distance({needle, now_a}, {cone, now_b}).lower <= options.tolerance);
     }
 }

@@ -23,9 +23,7 @@ using namespace crofton::testing;
 namespace {
 
 MeshTree refittable(const TriangleMesh& mesh) {
-    auto tree = MeshTree::build(mesh, {.refittable = true});
-    REQUIRE(tree.has_value());
-    return std::move(*tree);
+    return MeshTree::build(mesh, {.refittable = true}).value();
 }
 
 // Bent and twisted about z, by `much`.

@@ -127,10 +127,9 @@ TEST_SUITE("mesh/mesh_tree") {
         mesh.positions[7].y = std::numeric_limits<float>::infinity();
         mesh.positions[30].z = 3e12f;
         mesh.indices[3 * 15] = 4000;
-        const auto tree = MeshTree::build(mesh);
-        REQUIRE(tree.has_value());
-        CHECK(test::ranges::equal(tree->rejected(), std::vector<std::uint32_t>{2, 10, 15}));
-        CHECK(tree->triangle_count() == 17);
+        const auto tree = MeshTree::build(mesh).value();
+        CHECK(test::ranges::equal(tree.rejected(), std::vector<std::uint32_t>{2, 10, 15}));
+        CHECK(tree.triangle_count() == 17);
     }
 
     TEST_CASE("every triangle is in exactly one leaf and in every box above it, only the root has few children") {
@@ -138,16 +137,15 @@ TEST_SUITE("mesh/mesh_tree") {
             const TriangleMesh mesh = random_triangles(count, 30.0f);
             for (const MeshBoxes boxes :
                  {MeshBoxes::small_perimeter, MeshBoxes::principal_axes, MeshBoxes::least_perimeter}) {
-                const auto tree = MeshTree::build(mesh, {boxes});
-                REQUIRE(tree.has_value());
+                const auto tree = MeshTree::build(mesh, {boxes}).value();
                 std::vector<int> seen(count, 0);
                 int deepest = 0;
-                walk(*tree, 0, 1, seen, deepest, mesh);
+                walk(tree, 0, 1, seen, deepest, mesh);
                 CHECK(test::ranges::all_of(seen, [](int n) { return n == 1; }));
                 int levels = 1;
                 for (std::size_t leaves = 16; 8 * leaves < count; leaves *= 16) ++levels;
                 CHECK(deepest == levels);
-                for (const MeshNode& node : std::span(tree->parts().nodes).subspan(1)) CHECK(node.count >= 8);
+                for (const MeshNode& node : std::span(tree.parts().nodes).subspan(1)) CHECK(node.count >= 8);
             }
         }
     }
@@ -182,11 +180,10 @@ TEST_SUITE("mesh/mesh_tree") {
         for (int t = 0; t < 3000; ++t)
             for (std::uint32_t v = 0; v < 3; ++v)
                 mesh.indices.push_back(t % 3 == 0 ? v : std::min(v, 1u) * std::uint32_t(t % 3 - 1));
-        const auto tree = MeshTree::build(mesh);
-        REQUIRE(tree.has_value());
+        const auto tree = MeshTree::build(mesh).value();
         std::vector<int> seen(3000, 0);
         int deepest = 0;
-        walk(*tree, 0, 1, seen, deepest, mesh);
+        walk(tree, 0, 1, seen, deepest, mesh);
         CHECK(deepest <= 6);
     }
 

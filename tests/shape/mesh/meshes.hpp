@@ -44,9 +44,7 @@ inline glm::dvec3 vertex(const TriangleMesh& mesh, std::size_t triangle, std::si
 }
 
 inline mesh::MeshTree tree_of(const TriangleMesh& mesh) {
-    auto tree = mesh::MeshTree::build(mesh);
-    REQUIRE(tree.has_value());
-    return std::move(*tree);
+    return mesh::MeshTree::build(mesh).value();
 }
 
 inline Triangle triangle(const TriangleMesh& mesh, std::size_t t, const RigidTransform& pose) {

@@ -128,16 +128,15 @@ TEST_SUITE("mesh/ray") {
     TEST_CASE("rays are prepared on request, and answered by the same bits before, after a refit and in a copy") {
         std::mt19937_64 random(17);
         TriangleMesh mesh = wavy_torus(1.0, 0.4, 0.2, 90, 60);
-        auto plain = mesh::MeshTree::build(mesh, {.refittable = true});
-        REQUIRE(plain.has_value());
-        CHECK(plain->parts().ray_nodes.empty());
-        auto asked = *plain;
+        auto plain = mesh::MeshTree::build(mesh, {.refittable = true}).value();
+        CHECK(plain.parts().ray_nodes.empty());
+        auto asked = plain;
         REQUIRE(asked.prepare_rays().has_value());
         const std::size_t count = asked.parts().ray_nodes.size();
         CHECK(count > 100);
         REQUIRE(asked.prepare_rays().has_value());  // the second time nothing is done
         CHECK(asked.parts().ray_nodes.size() == count);
-        CHECK(plain->parts().ray_nodes.empty());
+        CHECK(plain.parts().ray_nodes.empty());
         int hits = 0;
         for (int round = 0; round < 2; ++round) {
             for (int trial = 0; trial < 5000; ++trial) {
@@ -145,13 +144,13 @@ TEST_SUITE("mesh/ray") {
                 if (trial % 4 == 0) ray.direction[trial / 4 % 3] = 0.0;
                 if (trial % 7 == 0) ray.max_t = 1.0;
                 const auto hit = raycast(ray, asked);
-                CHECK(are_same(hit, raycast(ray, *plain)));
-                CHECK(hits_any(ray, *plain) == hit.has_value());
+                CHECK(are_same(hit, raycast(ray, plain)));
+                CHECK(hits_any(ray, plain) == hit.has_value());
                 hits += hit.has_value();
             }
             for (glm::vec3& p : mesh.positions) p.x += 0.3f * p.y * p.y;
             REQUIRE(asked.refit(mesh.positions).has_value());
-            REQUIRE(plain->refit(mesh.positions).has_value());
+            REQUIRE(plain.refit(mesh.positions).has_value());
         }
         CHECK(hits > 1000);
         CHECK(mesh::MeshTree().prepare_rays().has_value());  // of no triangles
@@ -160,9 +159,8 @@ TEST_SUITE("mesh/ray") {
     // A leaf has 384 bytes, a node of oriented boxes 1,088, one of aligned boxes 256.
     TEST_CASE("a mesh that is prepared for rays takes 70 bytes a triangle") {
         const TriangleMesh mesh = wavy_torus(1.0, 0.4, 0.2, 300, 200);
-        const auto tree = mesh::MeshTree::build(mesh, {.rays = true});
-        REQUIRE(tree.has_value());
-        const MeshParts& parts = tree->parts();
+        const auto tree = mesh::MeshTree::build(mesh, {.rays = true}).value();
+        const MeshParts& parts = tree.parts();
         const auto bytes = [](const auto& vector) {
             return static_cast<double>(vector.capacity() * sizeof(vector[0]));
         };

@@ -21,10 +21,9 @@ struct Case {
 
 Case make_case(const Shape& shape, std::size_t count) {
     const std::vector<Material> materials(count);
-    auto patches = make_patches(shape.mesh, shape.patches, materials);
-    REQUIRE_MESSAGE(patches.has_value(), patches.error().message);
-    auto tracer = LineTracer::build(patches->mesh);
-    return {std::move(*patches), std::move(*tracer)};
+    auto patches = make_patches(shape.mesh, shape.patches, materials).value();
+    auto tracer = LineTracer::build(patches.mesh);
+    return {std::move(patches), std::move(*tracer)};
 }
 
 // F_01 by all estimators within 4 standard errors of the truth.
@@ -42,10 +41,9 @@ void check_pair(const Shape& shape, std::size_t count, double truth) {
         constexpr int kRepeats = 16;
         for (int r = 0; r < kRepeats; ++r) {
             const LineSource source(c.tracer.bounds(), method, 23 + static_cast<std::uint64_t>(r));
-            const auto matrix = factors_by_global_lines(c.tracer, c.patches, source, 40);
-            REQUIRE(matrix.has_value());
-            sum += matrix->factor(0, 1);
-            squares += matrix->factor(0, 1) * matrix->factor(0, 1);
+            const auto matrix = factors_by_global_lines(c.tracer, c.patches, source, 40).value();
+            sum += matrix.factor(0, 1);
+            squares += matrix.factor(0, 1) * matrix.factor(0, 1);
         }
         const double mean = sum / kRepeats, error = std::sqrt((squares / kRepeats - mean * mean) / (kRepeats - 1));
         CHECK(error < 0.1 * truth);
@@ -93,25 +91,24 @@ TEST_SUITE("radiosity/form_factors") {
         s.parallelogram({1, 0.5f, 0.4f}, {0, 1, 0.1f}, {1, 0, 0}, 7);  // and its underside
         const Case c = make_case(s, 8);
         const LineSource source(c.tracer.bounds(), LineMethod::walls, 5);
-        const auto m = factors_by_global_lines(c.tracer, c.patches, source, 400);
-        REQUIRE(m.has_value());
+        const auto m = factors_by_global_lines(c.tracer, c.patches, source, 400).value();
         for (std::size_t i = 0; i < 8; ++i) {
             double sum = 0.0;
             for (std::size_t j = 0; j < 8; ++j) {
-                sum += m->factor(i, j);
+                sum += m.factor(i, j);
                 // Both ways along a stretch at once: the counts themselves are symmetric.
-                CHECK(m->transfers[i * 8 + j] == m->transfers[j * 8 + i]);
-                const double there = c.patches.areas[i] * m->factor(i, j), back = c.patches.areas[j] * m->factor(j, i);
-                const double error = std::hypot(c.patches.areas[i] * m->standard_error(i, j),
-                                                c.patches.areas[j] * m->standard_error(j, i));
+                CHECK(m.transfers[i * 8 + j] == m.transfers[j * 8 + i]);
+                const double there = c.patches.areas[i] * m.factor(i, j), back = c.patches.areas[j] * m.factor(j, i);
+                const double error = std::hypot(c.patches.areas[i] * m.standard_error(i, j),
+                                                c.patches.areas[j] * m.standard_error(j, i));
                 CHECK(std::abs(there - back) < 4.5 * error + 1e-4);
             }
             CHECK(sum == doctest::Approx(1.0).epsilon(1e-4));
             const FactorRow row = factors_by_local_lines(c.tracer, c.patches, static_cast<std::uint32_t>(i), 20'000,
                                                          LocalDensity::cosine, 9);
             for (std::size_t j = 0; j < 8; ++j)
-                CHECK(std::abs(row.factors[j] - m->factor(i, j)) <
-                      4.5 * std::hypot(row.standard_errors[j], m->standard_error(i, j)) + 1e-3);
+                CHECK(std::abs(row.factors[j] - m.factor(i, j)) <
+                      4.5 * std::hypot(row.standard_errors[j], m.standard_error(i, j)) + 1e-3);
         }
     }
 

@@ -19,9 +19,7 @@ using crofton::radiosity::Patches;
 using crofton::radiosity::SolverOptions;
 
 inline Patches patches_of(const Shape& shape, const std::vector<Material>& materials) {
-    auto patches = make_patches(shape.mesh, shape.patches, materials);
-    REQUIRE_MESSAGE(patches.has_value(), patches.error().message);
-    return std::move(*patches);
+    return make_patches(shape.mesh, shape.patches, materials).value();
 }
 
 inline SolverOptions quick() {

@@ -17,10 +17,9 @@ namespace {
 
 double area_of(const TriangleMesh& mesh) {
     const std::vector<Material> materials(mesh.triangle_count());
-    const auto patches = make_patches(mesh, materials);
-    REQUIRE(patches.has_value());
+    const auto patches = make_patches(mesh, materials).value();
     double sum = 0.0;
-    for (const double a : patches->areas) sum += a;
+    for (const double a : patches.areas) sum += a;
     return sum;
 }
 
@@ -31,11 +30,10 @@ TEST_SUITE("radiosity/patches") {
         shapes::Shape room;
         room.room({1, 2, 3}, {4, 4, 9}, 0);
         const std::vector<Material> materials(6);
-        const auto patches = make_patches(room.mesh, room.patches, materials);
-        REQUIRE(patches.has_value());
-        REQUIRE(std::equal(room.patches.begin(), room.patches.end(), patches->patch_of_triangle.begin(),
-                           patches->patch_of_triangle.end()));
-        REQUIRE(patches->triangle_areas.size() == 12);
+        const auto patches = make_patches(room.mesh, room.patches, materials).value();
+        REQUIRE(std::equal(room.patches.begin(), room.patches.end(), patches.patch_of_triangle.begin(),
+                           patches.patch_of_triangle.end()));
+        REQUIRE(patches.triangle_areas.size() == 12);
         std::vector<double> sums(6, 0.0);
         for (std::size_t t = 0; t < 12; ++t) {
             const auto at = [&](std::size_t k) {
@@ -43,18 +41,17 @@ TEST_SUITE("radiosity/patches") {
             };
             const double a = glm::distance(at(0), at(1)), b = glm::distance(at(1), at(2)),
                          c = glm::distance(at(2), at(0)), s = 0.5 * (a + b + c);
-            CHECK(patches->triangle_areas[t] == doctest::Approx(std::sqrt(s * (s - a) * (s - b) * (s - c))));  // Heron
-            sums[room.patches[t]] += patches->triangle_areas[t];
+            CHECK(patches.triangle_areas[t] == doctest::Approx(std::sqrt(s * (s - a) * (s - b) * (s - c))));  // Heron
+            sums[room.patches[t]] += patches.triangle_areas[t];
         }
-        for (std::size_t p = 0; p < 6; ++p) CHECK(patches->areas[p] == doctest::Approx(sums[p]));
+        for (std::size_t p = 0; p < 6; ++p) CHECK(patches.areas[p] == doctest::Approx(sums[p]));
         // 3 × 2 × 6: two sides each of 12, 6 and 18.
         std::sort(sums.begin(), sums.end());
         CHECK(sums == std::vector<double>{6, 6, 12, 12, 18, 18});
-        const auto single = make_patches(room.mesh, std::vector<Material>(12));
-        REQUIRE(single.has_value());
+        const auto single = make_patches(room.mesh, std::vector<Material>(12)).value();
         for (std::uint32_t t = 0; t < 12; ++t) {
-            CHECK(single->patch_of_triangle[t] == t);
-            CHECK(single->areas[t] == single->triangle_areas[t]);
+            CHECK(single.patch_of_triangle[t] == t);
+            CHECK(single.areas[t] == single.triangle_areas[t]);
         }
     }
 
@@ -94,15 +91,14 @@ TEST_SUITE("radiosity/patches") {
         shape.sphere({1, 0.5f, 1}, 0.3f, 6, false, 6);
         REQUIRE(shapes::unmatched_edges(shape.mesh) == 0);
         for (const double longest : {5.0, 0.7, 0.11}) {
-            const auto refined = refine(shape.mesh, longest);
-            REQUIRE(refined.has_value());
-            CHECK(shapes::unmatched_edges(refined->mesh) == 0);
-            CHECK(area_of(refined->mesh) == doctest::Approx(area_of(shape.mesh)).epsilon(1e-6));
-            REQUIRE(refined->source.size() == refined->mesh.triangle_count());
+            const auto refined = refine(shape.mesh, longest).value();
+            CHECK(shapes::unmatched_edges(refined.mesh) == 0);
+            CHECK(area_of(refined.mesh) == doctest::Approx(area_of(shape.mesh)).epsilon(1e-6));
+            REQUIRE(refined.source.size() == refined.mesh.triangle_count());
             std::vector<double> by_source(shape.mesh.triangle_count(), 0.0);
-            const std::vector<Material> materials(refined->source.size());
-            const auto patches = make_patches(refined->mesh, materials);
-            for (std::size_t t = 0; t < refined->source.size(); ++t) by_source[refined->source[t]] += patches->areas[t];
+            const std::vector<Material> materials(refined.source.size());
+            const auto patches = make_patches(refined.mesh, materials);
+            for (std::size_t t = 0; t < refined.source.size(); ++t) by_source[refined.source[t]] += patches->areas[t];
             const std::vector<Material> coarse_materials(by_source.size());
             const auto coarse = make_patches(shape.mesh, coarse_materials);
             for (std::size_t t = 0; t < by_source.size(); ++t)
@@ -129,20 +125,18 @@ TEST_SUITE("radiosity/patches") {
                 }
             }
             for (glm::vec3& p : mesh.positions) p += shift;  // exactly
-            const auto mended = mend_t_junctions(mesh, 1e-5);
-            REQUIRE(mended.has_value());
+            const auto mended = mend_t_junctions(mesh, 1e-5).value();
             double sum = 0.0;
-            for (std::size_t i = 0; i < mended->mesh.indices.size(); ++i) {
+            for (std::size_t i = 0; i < mended.mesh.indices.size(); ++i) {
                 const std::size_t next = i % 3 == 2 ? i - 2 : i + 1;
-                sum += glm::distance(glm::dvec3(mended->mesh.positions[mended->mesh.indices[i]]),
-                                     glm::dvec3(mended->mesh.positions[mended->mesh.indices[next]]));
+                sum += glm::distance(glm::dvec3(mended.mesh.positions[mended.mesh.indices[i]]),
+                                     glm::dvec3(mended.mesh.positions[mended.mesh.indices[next]]));
             }
             if (expected.empty()) {
-                expected.assign(mended->mesh.indices.begin(), mended->mesh.indices.end());
+                expected.assign(mended.mesh.indices.begin(), mended.mesh.indices.end());
                 length = sum;
             }
-            CHECK(
-                std::equal(expected.begin(), expected.end(), mended->mesh.indices.begin(), mended->mesh.indices.end()));
+            CHECK(std::equal(expected.begin(), expected.end(), mended.mesh.indices.begin(), mended.mesh.indices.end()));
             CHECK(sum == length);
         }
         CHECK(expected.size() == 3 * (9 + 8));
@@ -164,16 +158,15 @@ TEST_SUITE("radiosity/patches") {
         REQUIRE(shapes::unmatched_edges(cut.mesh) > 0);
         const auto color_at = [](const glm::vec3& p) { return 0.3f + 0.1f * glm::vec3(p.x, p.y - p.z, p.z); };
         for (const glm::vec3& p : cut.mesh.positions) cut.mesh.colors.push_back(color_at(p));
-        const auto mended = mend_t_junctions(cut.mesh, 1e-5);
-        REQUIRE(mended.has_value());
-        CHECK(shapes::unmatched_edges(mended->mesh) == 0);
+        const auto mended = mend_t_junctions(cut.mesh, 1e-5).value();
+        CHECK(shapes::unmatched_edges(mended.mesh) == 0);
         // New corners have the colour of their place.
-        REQUIRE(mended->mesh.positions.size() > cut.mesh.positions.size());
-        REQUIRE(mended->mesh.colors.size() == mended->mesh.positions.size());
-        for (std::size_t i = 0; i < mended->mesh.colors.size(); ++i)
-            CHECK(glm::length(mended->mesh.colors[i] - color_at(mended->mesh.positions[i])) < 1e-5f);
-        CHECK(area_of(mended->mesh) == doctest::Approx(area_of(cut.mesh)).epsilon(1e-6));
-        CHECK(shapes::unmatched_edges(refine(mended->mesh, 0.11)->mesh) == 0);
+        REQUIRE(mended.mesh.positions.size() > cut.mesh.positions.size());
+        REQUIRE(mended.mesh.colors.size() == mended.mesh.positions.size());
+        for (std::size_t i = 0; i < mended.mesh.colors.size(); ++i)
+            CHECK(glm::length(mended.mesh.colors[i] - color_at(mended.mesh.positions[i])) < 1e-5f);
+        CHECK(area_of(mended.mesh) == doctest::Approx(area_of(cut.mesh)).epsilon(1e-6));
+        CHECK(shapes::unmatched_edges(refine(mended.mesh, 0.11)->mesh) == 0);
         CHECK(shapes::unmatched_edges(refine(cut.mesh, 0.11)->mesh) > 0);
         // A mesh without T-junctions is left as it is, and bad arguments are refused.
         CHECK(mend_t_junctions(box.mesh, 1e-5)->mesh.indices == box.mesh.indices);

@@ -72,15 +72,13 @@ TEST_SUITE("radiosity/shadow edges") {
         for (const std::uint32_t halvings : {0u, 1u, 2u, 3u, 4u}) {
             const auto cut = refine_at_shadows(mesh, 3.0 * kToSun, halvings);
             REQUIRE(cut.has_value());
-            const auto lit = sunlit_triangles(cut->mesh, kToSun);
-            REQUIRE(lit.has_value());
+            const auto lit = sunlit_triangles(cut->mesh, kToSun).value();
             // A tracer of the mesh that was cut says the same.
             const LineTracer scene = LineTracer::build(mesh).value();
-            const auto cut_with_tracer = refine_at_shadows(scene, mesh, 3.0 * kToSun, halvings);
-            REQUIRE(cut_with_tracer.has_value());
-            CHECK(cut_with_tracer->source == cut->source);
-            CHECK(sunlit_triangles(scene, cut->mesh, kToSun).value() == *lit);
-            const Ground ground = judge(cut->mesh, *lit);
+            const auto cut_with_tracer = refine_at_shadows(scene, mesh, 3.0 * kToSun, halvings).value();
+            CHECK(cut_with_tracer.source == cut->source);
+            CHECK(sunlit_triangles(scene, cut->mesh, kToSun).value() == lit);
+            const Ground ground = judge(cut->mesh, lit);
             INFO("halvings ", halvings, " wrong ", ground.wrong, " triangles ", ground.triangles);
             CHECK(ground.area == doctest::Approx(100.0).epsilon(1e-6));
             CHECK(shapes::unmatched_edges(cut->mesh) == border);
@@ -122,9 +120,8 @@ TEST_SUITE("radiosity/shadow edges") {
 
     TEST_CASE("triangles that face away are dark and not cut, and without a shadow there is no cut") {
         const TriangleMesh mesh = ground_and_plate();
-        const auto below = refine_at_shadows(mesh, {0.0, -1.0, 0.0}, 5);
-        REQUIRE(below.has_value());
-        CHECK(below->mesh.indices == mesh.indices);
+        const auto below = refine_at_shadows(mesh, {0.0, -1.0, 0.0}, 5).value();
+        CHECK(below.mesh.indices == mesh.indices);
         const auto dark = sunlit_triangles(mesh, {0.0, -1.0, 0.0});
         for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
             const glm::vec3& p = mesh.positions[mesh.indices[3 * t]];
@@ -132,9 +129,8 @@ TEST_SUITE("radiosity/shadow edges") {
         }
         shapes::Shape alone;
         alone.parallelogram({0, 0, 0}, {0, 0, 10}, {10, 0, 0}, 0);
-        const auto bare = refine_at_shadows(alone.mesh, kToSun, 5);
-        REQUIRE(bare.has_value());
-        CHECK(bare->mesh.indices == alone.mesh.indices);
+        const auto bare = refine_at_shadows(alone.mesh, kToSun, 5).value();
+        CHECK(bare.mesh.indices == alone.mesh.indices);
         const auto bright = sunlit_triangles(alone.mesh, kToSun);
         CHECK(*bright == Vector<std::uint32_t>{1, 1});
     }
@@ -148,10 +144,9 @@ TEST_SUITE("radiosity/shadow edges") {
         scene.parallelogram({4, 0, 4}, {0, 0, 2}, {0, 2, 0}, 1);
         scene.parallelogram({4, 2, 6}, {2, 0, 0}, {0, 0, -2}, 1);  // the roof
         const TriangleMesh mesh = refine(scene.mesh, 0.5)->mesh;
-        const auto cut = refine_at_shadows(mesh, kToSun, 3);
-        REQUIRE(cut.has_value());
+        const auto cut = refine_at_shadows(mesh, kToSun, 3).value();
         std::vector<int> parts(mesh.triangle_count(), 0);
-        for (const std::uint32_t source : cut->source) ++parts[source];
+        for (const std::uint32_t source : cut.source) ++parts[source];
         std::size_t ground = 0;
         for (std::size_t t = 0; t < parts.size(); ++t) {
             bool flat = true, on_ground = false;

@@ -76,14 +76,13 @@ TEST_SUITE("radiosity/solver") {
             for (const Transport transport : {Transport::global, Transport::local}) {
                 SolverOptions options = quick();
                 options.transport = transport;
-                auto solver = Solver::create(patches, options);
-                REQUIRE(solver.has_value());
-                for (int run = 0; run < 12; ++run) solver->run();
+                auto solver = Solver::create(patches, options).value();
+                for (int run = 0; run < 12; ++run) solver.run();
                 // The first shot is the only noise, about √(7/(12·2^14)) per patch: later bounces of a constant are
                 // exact.
-                for (const glm::vec3& b : solver->radiosity())
+                for (const glm::vec3& b : solver.radiosity())
                     CHECK(b.x == doctest::Approx(1.0 / (1.0 - rho)).epsilon(0.02));
-                CHECK(solver->unseen() == 0.0);
+                CHECK(solver.unseen() == 0.0);
             }
         }
     }
@@ -91,16 +90,15 @@ TEST_SUITE("radiosity/solver") {
     TEST_CASE("energy: what the lamps of a closed scene give off is absorbed") {
         const Box box = lit_box(3);
         const Patches patches = patches_of(box.shape, box.materials);
-        auto solver = Solver::create(patches, quick());
-        REQUIRE(solver.has_value());
-        for (int run = 0; run < 10; ++run) solver->run();
+        auto solver = Solver::create(patches, quick()).value();
+        for (int run = 0; run < 10; ++run) solver.run();
         for (int k = 0; k < 3; ++k) {
             double given = 0.0, absorbed = 0.0;
             for (std::size_t i = 0; i < patches.count(); ++i) {
                 const double e = static_cast<double>(patches.materials[i].emission[k]),
                              r = static_cast<double>(patches.materials[i].reflectance[k]);
                 given += patches.areas[i] * e;
-                absorbed += patches.areas[i] * (1.0 - r) * (static_cast<double>(solver->radiosity()[i][k]) - e) / r;
+                absorbed += patches.areas[i] * (1.0 - r) * (static_cast<double>(solver.radiosity()[i][k]) - e) / r;
             }
             CHECK(absorbed == doctest::Approx(given).epsilon(0.01));
         }
@@ -113,14 +111,13 @@ TEST_SUITE("radiosity/solver") {
         for (const Transport transport : {Transport::global, Transport::local}) {
             SolverOptions options = quick();
             options.transport = transport;
-            auto solver = Solver::create(patches, options);
-            REQUIRE(solver.has_value());
-            for (int run = 0; run < 20; ++run) solver->run();
-            CHECK(solver->relative_error() < 0.02);
+            auto solver = Solver::create(patches, options).value();
+            for (int run = 0; run < 20; ++run) solver.run();
+            CHECK(solver.relative_error() < 0.02);
             double error = 0.0, size = 0.0;
             for (std::size_t i = 0; i < truth.size(); ++i)
                 for (int k = 0; k < 3; ++k) {
-                    const double difference = static_cast<double>(solver->radiosity()[i][k]) - truth[i][k];
+                    const double difference = static_cast<double>(solver.radiosity()[i][k]) - truth[i][k];
                     error += patches.areas[i] * difference * difference;
                     size += patches.areas[i] * truth[i][k] * truth[i][k];
                 }
@@ -137,16 +134,14 @@ TEST_SUITE("radiosity/solver") {
         const Patches patches = patches_of(s, std::vector<Material>(2, {glm::vec3(0.0f), glm::vec3(0.5f)}));
         SolverOptions options = quick();
         options.outside.sky = {1.0f, 2.0f, 3.0f};
-        auto sky = Solver::create(patches, options);
-        REQUIRE(sky.has_value());
-        sky->run();
-        CHECK(sky->radiosity()[0].z == doctest::Approx(1.5).epsilon(1e-6));
+        auto sky = Solver::create(patches, options).value();
+        sky.run();
+        CHECK(sky.radiosity()[0].z == doctest::Approx(1.5).epsilon(1e-6));
         options.outside = {glm::vec3(0.0f), glm::vec3(2.0f), {1.0, 1.0, 0.0}};
         options.first_shot = 1 << 17;
-        auto sun = Solver::create(patches, options);
-        REQUIRE(sun.has_value());
-        for (int run = 0; run < 4; ++run) sun->run();
-        CHECK(sun->radiosity()[0].x == doctest::Approx(0.5 * 2.0 * std::sqrt(0.5)).epsilon(0.01));
+        auto sun = Solver::create(patches, options).value();
+        for (int run = 0; run < 4; ++run) sun.run();
+        CHECK(sun.radiosity()[0].x == doctest::Approx(0.5 * 2.0 * std::sqrt(0.5)).epsilon(0.01));
     }
 
     TEST_CASE(
@@ -166,12 +161,11 @@ TEST_SUITE("radiosity/solver") {
             options.transport = transport;
             options.outside.sky = glm::vec3(1.0f);
             options.outside.sun = glm::vec3(2.0f);
-            auto solver = Solver::create(patches, options);
-            REQUIRE(solver.has_value());
-            for (int run = 0; run < 8; ++run) solver->run();
-            CHECK(solver->exposed_share(0) == doctest::Approx(0.5).epsilon(0.05));
-            CHECK(solver->irradiance()[0].x == doctest::Approx(3.0).epsilon(0.01));
-            CHECK(solver->radiosity()[0].x == doctest::Approx(1.5).epsilon(0.01));
+            auto solver = Solver::create(patches, options).value();
+            for (int run = 0; run < 8; ++run) solver.run();
+            CHECK(solver.exposed_share(0) == doctest::Approx(0.5).epsilon(0.05));
+            CHECK(solver.irradiance()[0].x == doctest::Approx(3.0).epsilon(0.01));
+            CHECK(solver.radiosity()[0].x == doctest::Approx(1.5).epsilon(0.01));
         }
     }
 
@@ -203,16 +197,15 @@ TEST_SUITE("radiosity/solver") {
         double sum = 0.0, squares = 0.0;
         for (int seed = 1; seed <= kSeeds; ++seed) {
             options.seed = static_cast<std::uint64_t>(seed);
-            auto solver = Solver::create(patches, options);
-            REQUIRE(solver.has_value());
+            auto solver = Solver::create(patches, options).value();
             const auto all = [&] {
                 double result = 0.0;
-                for (const glm::vec3& b : solver->radiosity()) result += static_cast<double>(b.x);
+                for (const glm::vec3& b : solver.radiosity()) result += static_cast<double>(b.x);
                 return result;
             };
-            solver->run();
+            solver.run();
             const double first = all();
-            solver->run();
+            solver.run();
             const double second = 2.0 * all() - first;
             sum += second;
             squares += second * second;
@@ -224,13 +217,12 @@ TEST_SUITE("radiosity/solver") {
     TEST_CASE("the estimated error is the true one's size, and four times the runs halve it") {
         const Box box = lit_box(3);
         const Patches patches = patches_of(box.shape, box.materials);
-        auto solver = Solver::create(patches, quick());
-        REQUIRE(solver.has_value());
-        CHECK(std::isinf(solver->relative_error()));
-        for (int run = 0; run < 16; ++run) solver->run();
-        const double early = solver->relative_error();
-        for (int run = 16; run < 64; ++run) solver->run();
-        CHECK(early / solver->relative_error() == doctest::Approx(2.0).epsilon(0.2));
+        auto solver = Solver::create(patches, quick()).value();
+        CHECK(std::isinf(solver.relative_error()));
+        for (int run = 0; run < 16; ++run) solver.run();
+        const double early = solver.relative_error();
+        for (int run = 16; run < 64; ++run) solver.run();
+        CHECK(early / solver.relative_error() == doctest::Approx(2.0).epsilon(0.2));
     }
 
     TEST_CASE("share_within estimates the share of patches within 10 % from the runs, and tends to be too small") {
@@ -279,11 +271,10 @@ TEST_SUITE("radiosity/solver") {
                 material.reflectance[channel] = reflectance;
             }
             const Patches patches = patches_of(lit.shape, lit.materials);
-            auto solver = Solver::create(patches, quick());
-            REQUIRE(solver.has_value());
-            for (int run = 0; run < 5; ++run) solver->run();
-            share[channel] = solver->share_within(0.01);
-            error[channel] = solver->relative_error();
+            auto solver = Solver::create(patches, quick()).value();
+            for (int run = 0; run < 5; ++run) solver.run();
+            share[channel] = solver.share_within(0.01);
+            error[channel] = solver.relative_error();
         }
         CHECK(share[0] > 0.0);
         CHECK(share[0] < 0.99);

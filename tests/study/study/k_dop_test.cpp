@@ -53,9 +53,8 @@ TEST_SUITE("study/k_dop") {
         for (int i = 0; i < 20000; ++i)
             sphere.push_back(sampling::direction({(i + 0.5) / 20000, std::fmod(i * 0.6180339887498949, 1.0)}));
         const auto volume = [&](std::uint32_t k) {
-            const auto dop = study::k_dop_around(sphere, *study::k_dop_directions(k));
-            REQUIRE(dop.has_value());
-            return measure::intrinsic_volumes_of_hull(dop->corners)->volume;
+            const auto dop = study::k_dop_around(sphere, *study::k_dop_directions(k)).value();
+            return measure::intrinsic_volumes_of_hull(dop.corners)->volume;
         };
         CHECK(volume(6) == doctest::Approx(8.0).epsilon(1e-3));
         // A cube of side 2 less eight corners: x + y + z > √3 cuts off right tetrahedra with legs L = 3 − √3, of which

@@ -67,18 +67,17 @@ TEST_SUITE("study/light_field") {
         CHECK(study::LightField::record(tracer, light, {.lines = 0}).error().code == ErrorCode::out_of_range);
         CHECK(study::LightField::record(tracer, light, {.lines = (std::uint64_t{1} << 28) + 1}).error().code ==
               ErrorCode::out_of_range);
-        const auto field = study::LightField::record(tracer, light, {.lines = 1000});
-        REQUIRE(field.has_value());
+        const auto field = study::LightField::record(tracer, light, {.lines = 1000}).value();
         Camera camera = camera_in_room();
-        CHECK(field->draw(camera, 0, 9, {}).error().code == ErrorCode::out_of_range);
-        CHECK(field->draw(camera, 1 << 13, 1 << 13, {}).error().code == ErrorCode::out_of_range);
-        CHECK(field->draw(camera, 9, 6, {.samples = 0.0}).error().code == ErrorCode::out_of_range);
-        CHECK(field->draw(camera, 9, 6, {.blend = 13}).error().code == ErrorCode::out_of_range);
+        CHECK(field.draw(camera, 0, 9, {}).error().code == ErrorCode::out_of_range);
+        CHECK(field.draw(camera, 1 << 13, 1 << 13, {}).error().code == ErrorCode::out_of_range);
+        CHECK(field.draw(camera, 9, 6, {.samples = 0.0}).error().code == ErrorCode::out_of_range);
+        CHECK(field.draw(camera, 9, 6, {.blend = 13}).error().code == ErrorCode::out_of_range);
         camera.projection = Projection::orthographic;
-        CHECK(field->draw(camera, 9, 6, {}).error().code == ErrorCode::unsupported);
+        CHECK(field.draw(camera, 9, 6, {}).error().code == ErrorCode::unsupported);
         camera.fov_y = std::nan("");
         camera.projection = Projection::perspective;
-        CHECK_FALSE(field->draw(camera, 9, 6, {}).has_value());
+        CHECK_FALSE(field.draw(camera, 9, 6, {}).has_value());
         CHECK_FALSE(study::direct_picture(tracer, light, {}, camera, 9, 6).has_value());
     }
 
@@ -101,9 +100,8 @@ TEST_SUITE("study/light_field") {
             return study::Leaving{glm::vec3(0.5f, 1.0f, 2.0f), normal_of(mesh, t)};
         };
         const auto field = *study::LightField::record(tracer, light, {.lines = 20000});
-        const auto drawn = field.draw(camera_in_room(), 48, 32, {});
-        REQUIRE(drawn.has_value());
-        for (const glm::vec3& pixel : drawn->picture.pixels)
+        const auto drawn = field.draw(camera_in_room(), 48, 32, {}).value();
+        for (const glm::vec3& pixel : drawn.picture.pixels)
             CHECK(glm::distance(pixel, glm::vec3(0.5f, 1.0f, 2.0f)) < 1e-6f);
         const auto row = field.draw(camera_in_room(), 48, 1, {}), column = field.draw(camera_in_room(), 1, 32, {});
         for (const auto* line : {&row, &column})
@@ -145,12 +143,12 @@ TEST_SUITE("study/light_field") {
         const auto truth = *study::direct_picture(tracer, light, glm::vec3(0.0f), camera, 96, 64);
         double before = 1.0, aperture = 100.0;
         for (const std::uint64_t lines : {10'000u, 100'000u, 1'000'000u}) {
-            const auto drawn = study::LightField::record(tracer, light, {.lines = lines})->draw(camera, 96, 64, {});
-            REQUIRE(drawn.has_value());
-            const double error = study::relative_difference(drawn->picture, truth);
+            const auto drawn =
+                study::LightField::record(tracer, light, {.lines = lines})->draw(camera, 96, 64, {}).value();
+            const double error = study::relative_difference(drawn.picture, truth);
             CHECK(error < before);
-            CHECK(drawn->aperture < aperture);
-            before = error, aperture = drawn->aperture;
+            CHECK(drawn.aperture < aperture);
+            before = error, aperture = drawn.aperture;
         }
         CHECK(before < 0.035);  // the column's edges are a pixel off
     }

@@ -92,20 +92,18 @@ TEST_SUITE("study/mutual_information") {
         pair.transfers = {0, 1000, 1000, 0};
         pair.rays = {1000, 1000};
         pair.escaped = {0, 0};
-        const auto bit = study::mutual_information(pair);
-        REQUIRE(bit.has_value());
-        CHECK(bit->bits + bit->bias == doctest::Approx(1.0));
-        CHECK(bit->entropy_bits == doctest::Approx(1.0));
-        CHECK(bit->rays == 2000);
-        CHECK(bit->pairs == 2);
+        const auto bit = study::mutual_information(pair).value();
+        CHECK(bit.bits + bit.bias == doctest::Approx(1.0));
+        CHECK(bit.entropy_bits == doctest::Approx(1.0));
+        CHECK(bit.rays == 2000);
+        CHECK(bit.pairs == 2);
         radiosity::FactorMatrix alike;
         alike.size = 3;
         alike.transfers.assign(9, 500);
         alike.rays.assign(3, 1500);
         alike.escaped.assign(3, 0);
-        const auto nothing = study::mutual_information(alike);
-        REQUIRE(nothing.has_value());
-        CHECK(nothing->bits + nothing->bias == doctest::Approx(0.0));
+        const auto nothing = study::mutual_information(alike).value();
+        CHECK(nothing.bits + nothing.bias == doctest::Approx(0.0));
         // All escapes: sky and patch tell each other everything.
         radiosity::FactorMatrix open;
         open.size = 1;
@@ -120,16 +118,13 @@ TEST_SUITE("study/mutual_information") {
         Vector<std::uint32_t> face;
         for (std::uint32_t t = 0; t < 12; ++t) face.push_back(t / 2);
         const Vector<radiosity::Material> materials(6);
-        const auto patches = radiosity::make_patches(mesh, face, materials);
-        REQUIRE(patches.has_value());
-        const auto tracer = lines::LineTracer::build(mesh);
-        REQUIRE(tracer.has_value());
-        const lines::LineSource source(tracer->bounds(), lines::LineMethod::walls, 3);
-        const auto matrix = radiosity::factors_by_global_lines(*tracer, *patches, source, 400);
-        REQUIRE(matrix.has_value());
+        const auto patches = radiosity::make_patches(mesh, face, materials).value();
+        const auto tracer = lines::LineTracer::build(mesh).value();
+        const lines::LineSource source(tracer.bounds(), lines::LineMethod::walls, 3);
+        const auto matrix = radiosity::factors_by_global_lines(tracer, patches, source, 400).value();
         const double opposite = 0.199825, adjacent = 0.25 * (1.0 - opposite);
         const double exact = opposite * std::log2(6.0 * opposite) + 4.0 * adjacent * std::log2(6.0 * adjacent);
         CHECK(exact == doctest::Approx(0.26303).epsilon(1e-4));
-        CHECK(study::mutual_information(*matrix)->bits == doctest::Approx(exact).epsilon(2e-3));
+        CHECK(study::mutual_information(matrix)->bits == doctest::Approx(exact).epsilon(2e-3));
     }
 }

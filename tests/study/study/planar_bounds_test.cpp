@@ -102,26 +102,23 @@ TEST_SUITE("study/planar_bounds") {
     TEST_CASE("an object that its ancestor fits exactly leaves nothing to gain") {
         const std::vector<glm::dvec2> square = {{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}};
         const PlanarSupport tight = *PlanarSupport::of_hull(square);
-        const auto disc = optimal_disc(square, tight);
-        REQUIRE(disc.has_value());
-        CHECK(disc->measure == doctest::Approx(4.0));
-        CHECK(disc->lower_bound == doctest::Approx(4.0));
+        const auto disc = optimal_disc(square, tight).value();
+        CHECK(disc.measure == doctest::Approx(4.0));
+        CHECK(disc.lower_bound == doctest::Approx(4.0));
         CHECK(optimal_rectangle(square, tight)->measure == doctest::Approx(4.0));
     }
 
     TEST_CASE("an object that touches its ancestor is inside it far from the origin, too") {
         const Rectangle rectangle{{0.5, 0.5}, {1.0, 0.0}, {0.5, 0.5}};
         const std::vector<glm::dvec2> object = {{0.0, 0.0}, {1.0, 0.25}, {0.75, 1.0}, {0.25, 0.875}};
-        const auto near = optimal_disc(object, PlanarSupport(rectangle));
-        REQUIRE(near.has_value());
+        const auto near = optimal_disc(object, PlanarSupport(rectangle)).value();
         for (const double offset : {1e6, 1e8, -1e9}) {
             std::vector<glm::dvec2> moved = object;
             for (glm::dvec2& p : moved) p += offset;
             const PlanarSupport around(Rectangle{rectangle.center + offset, rectangle.axis, rectangle.half_extents});
-            const auto disc = optimal_disc(moved, around);
-            REQUIRE(disc.has_value());
+            const auto disc = optimal_disc(moved, around).value();
             // About 1e-15 of the coordinates, in each of some ten pieces.
-            CHECK(std::abs(disc->measure - near->measure) < 1e-14 * std::abs(offset));
+            CHECK(std::abs(disc.measure - near.measure) < 1e-14 * std::abs(offset));
             CHECK(optimal_box(moved, around).has_value());
             CHECK(optimal_rectangle(moved, around).has_value());
             moved[2].y += 0.01;
@@ -136,10 +133,9 @@ TEST_SUITE("study/planar_bounds") {
             roof.emplace_back(0.0, height);
             const PlanarSupport ancestor = *PlanarSupport::of_hull(roof);
             for (const double tolerance : {1e-9, 1e-12}) {
-                const auto disc = optimal_disc(segment, ancestor, {.tolerance = tolerance});
-                REQUIRE(disc.has_value());
+                const auto disc = optimal_disc(segment, ancestor, {.tolerance = tolerance}).value();
                 // 1e-14: rounding of the integrals
-                CHECK(disc->measure - disc->lower_bound <= tolerance * ancestor.integral() + 1e-14);
+                CHECK(disc.measure - disc.lower_bound <= tolerance * ancestor.integral() + 1e-14);
             }
         }
     }
@@ -149,11 +145,10 @@ TEST_SUITE("study/planar_bounds") {
         const double nan = std::nan("");
         for (const double size : {1e-50, 1e-99, 1e-120, 1e-160, 1e-200, 1e-310}) {
             const std::vector<glm::dvec2> points = {{-size, 0.0}, {size, 0.0}, {0.0, size}};
-            const auto disc = optimal_disc(points, ancestor);
-            REQUIRE(disc.has_value());
-            CHECK(disc->measure == doctest::Approx(0.0));
-            CHECK(disc->lower_bound <= disc->measure);
-            CHECK(holds(disc->bound, points));
+            const auto disc = optimal_disc(points, ancestor).value();
+            CHECK(disc.measure == doctest::Approx(0.0));
+            CHECK(disc.lower_bound <= disc.measure);
+            CHECK(holds(disc.bound, points));
         }
         const std::vector<glm::dvec2> segment = {{-0.5, 0.0}, {0.5, 0.0}};
         const auto disc = optimal_disc(segment, ancestor, {.tolerance = nan});
@@ -183,11 +178,10 @@ TEST_SUITE("study/planar_bounds") {
             std::vector<glm::dvec2> points;
             for (int i = 0; i < n; ++i) points.push_back(circle_point(static_cast<double>(i) / n));
             const PlanarSupport ancestor(Rectangle{{0.1, 0.0}, {1.0, 0.0}, {1.3, 1.1}});
-            const auto disc = optimal_disc(points, ancestor);
-            REQUIRE(disc.has_value());
-            CHECK(disc->measure - disc->lower_bound <= 1e-9 * ancestor.integral());
-            CHECK(disc->measure <= integral_of_min(ancestor, Disc{{0.0, 0.0}, 1.0}) + 1e-12);
-            CHECK(holds(disc->bound, points));
+            const auto disc = optimal_disc(points, ancestor).value();
+            CHECK(disc.measure - disc.lower_bound <= 1e-9 * ancestor.integral());
+            CHECK(disc.measure <= integral_of_min(ancestor, Disc{{0.0, 0.0}, 1.0}) + 1e-12);
+            CHECK(holds(disc.bound, points));
         }
     }
 
@@ -305,10 +299,9 @@ TEST_SUITE("study/planar_bounds") {
         const Rectangle along{{-0.2, 0.35}, {root, root}, {0.55 * root, 0.35 * root}};
         CHECK(integral_of_min(PlanarSupport(disc), PlanarSupport(along)) ==
               doctest::Approx(3.6 * root).epsilon(1e-12));  // it lies in the disc
-        const auto best = optimal_rectangle(triangle, PlanarSupport(disc));
-        REQUIRE(best.has_value());
-        CHECK(best->measure == doctest::Approx(3.6 * root).epsilon(1e-9));
-        CHECK(best->lower_bound <= 3.6 * root);
+        const auto best = optimal_rectangle(triangle, PlanarSupport(disc)).value();
+        CHECK(best.measure == doctest::Approx(3.6 * root).epsilon(1e-9));
+        CHECK(best.lower_bound <= 3.6 * root);
     }
 
     TEST_CASE("the best rectangle given ancestors need not be flush, and is found all the same") {
@@ -318,11 +311,10 @@ TEST_SUITE("study/planar_bounds") {
         for (glm::dvec2& p : around)
             p = {std::cos(0.5) * p.x - std::sin(0.5) * p.y, std::sin(0.5) * p.x + std::cos(0.5) * p.y};
         const std::vector<glm::dvec2> triangle(around.begin(), around.begin() + 3);
-        const auto best = optimal_rectangle(triangle, *PlanarSupport::of_hull(around));
-        REQUIRE(best.has_value());
-        CHECK(best->measure == doctest::Approx(2.34771).epsilon(1e-5));
-        CHECK(best->lower_bound == doctest::Approx(best->measure).epsilon(1e-8));
-        const glm::dvec2 axis = best->bound.axis;
+        const auto best = optimal_rectangle(triangle, *PlanarSupport::of_hull(around)).value();
+        CHECK(best.measure == doctest::Approx(2.34771).epsilon(1e-5));
+        CHECK(best.lower_bound == doctest::Approx(best.measure).epsilon(1e-8));
+        const glm::dvec2 axis = best.bound.axis;
         for (std::size_t i = 0; i < 3; ++i) {
             const glm::dvec2 side = glm::normalize(triangle[(i + 1) % 3] - triangle[i]);
             const double turn = std::abs(axis.x * side.y - axis.y * side.x);

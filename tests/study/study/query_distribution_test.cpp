@@ -30,13 +30,11 @@ TEST_SUITE("study/query_distribution") {
     TEST_CASE("directions may have any length") {
         for (const double length : {0x1p-1060, 0x1p-530, 1.0, 0x1p600, 0x1p1021}) {
             const std::vector<glm::dvec3> one = {length * glm::dvec3(0.75, 1.0, 3.0)};
-            const auto samples = QueryDistribution::samples(one);
-            REQUIRE(samples.has_value());
-            CHECK(samples->mean_cosine({0, 0, 1}) == doctest::Approx(12.0 / 13.0).epsilon(1e-14));
-            const auto band = QueryDistribution::band(one[0], 0.2);
-            REQUIRE(band.has_value());
+            const auto samples = QueryDistribution::samples(one).value();
+            CHECK(samples.mean_cosine({0, 0, 1}) == doctest::Approx(12.0 / 13.0).epsilon(1e-14));
+            const auto band = QueryDistribution::band(one[0], 0.2).value();
             CHECK(
-                band->mean_cosine({0, 0, 1}) ==
+                band.mean_cosine({0, 0, 1}) ==
                 doctest::Approx(QueryDistribution::band({0.75, 1.0, 3.0}, 0.2)->mean_cosine({0, 0, 1})).epsilon(1e-14));
         }
     }
@@ -135,11 +133,10 @@ TEST_SUITE("study/query_distribution") {
                 points.push_back(glm::dvec3(1.0, 0.5, 0.2) * sampling::ball_point(random.point<3>()));
             const auto horizon = QueryDistribution::band({0, 1, 0}, 0.1);
             for (const auto kind : {study::QueryKind::planes, study::QueryKind::lines}) {
-                const auto fitted = study::fit_box_for(points, *horizon, kind);
-                REQUIRE(fitted.has_value());
-                CHECK(fitted->value <= fitted->plain_value * (1.0 + 1e-9));
-                CHECK(fitted->value >= fitted->lower_bound);
-                for (const glm::dvec3& p : points) CHECK(contains(fitted->box, p));
+                const auto fitted = study::fit_box_for(points, *horizon, kind).value();
+                CHECK(fitted.value <= fitted.plain_value * (1.0 + 1e-9));
+                CHECK(fitted.value >= fitted.lower_bound);
+                for (const glm::dvec3& p : points) CHECK(contains(fitted.box, p));
             }
         }
     }
@@ -153,10 +150,9 @@ TEST_SUITE("study/query_distribution") {
             camera.far_distance = 100.0;
             cameras.push_back(camera);
         }
-        const auto views = QueryDistribution::of_views(cameras);
-        REQUIRE(views.has_value());
+        const auto views = QueryDistribution::of_views(cameras).value();
         // Around the vertical all horizontal directions are alike.
-        CHECK(views->mean_cosine({1, 0, 0}) == doctest::Approx(views->mean_cosine({0, 0, 1})).epsilon(1e-6));
-        CHECK(views->mean_cosine({0, 1, 0}) > views->mean_cosine({1, 0, 0}));
+        CHECK(views.mean_cosine({1, 0, 0}) == doctest::Approx(views.mean_cosine({0, 0, 1})).epsilon(1e-6));
+        CHECK(views.mean_cosine({0, 1, 0}) > views.mean_cosine({1, 0, 0}));
     }
 }
