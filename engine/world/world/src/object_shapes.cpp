@@ -110,7 +110,8 @@ void ObjectShapes::list_unbounded(std::uint32_t object) {
 void ObjectShapes::set(std::uint32_t object, const convex::Shape* shape) {
     if (shape == nullptr && !has(object)) return;
     if (object >= entries_.size()) entries_.resize(object + std::size_t{1});
-    Entry& entry = entries_[object];
+    if (!entries_[object]) entries_[object] = Owner<Entry>::make();
+    Entry& entry = *entries_[object];
     count_ -= entry.own ? 1 : 0;
     count_ += shape != nullptr ? 1 : 0;
     entry.own.reset();
@@ -123,14 +124,14 @@ void ObjectShapes::set(std::uint32_t object, const convex::Shape* shape) {
 }
 
 void ObjectShapes::forget(std::uint32_t object) {
-    if (object >= entries_.size()) return;
-    count_ -= entries_[object].own ? 1 : 0;
+    if (!is_known(object)) return;
+    count_ -= entries_[object]->own ? 1 : 0;
     entries_[object] = {};
     list_unbounded(object);
 }
 
 PlacedShape ObjectShapes::take(std::uint32_t object) {
-    Entry& entry = entries_[object];
+    Entry& entry = *entries_[object];
     PlacedShape taken{std::move(entry.own), std::move(entry.scaled), std::nullopt};
     forget(object);
     return taken;
@@ -138,7 +139,7 @@ PlacedShape ObjectShapes::take(std::uint32_t object) {
 
 std::optional<RigidTransform> ObjectShapes::pose_of(std::uint32_t id, const Object& object, const Obb& box,
                                                     const scene::Scene& scene) const {
-    const Entry& entry = entries_[id];
+    const Entry& entry = *entries_[id];
     if (object.instance == kNoIndex) {
         if (entry.given.kind != BoundKind::none) return frame_of(entry.given.kind, entry.given.box);
         return frame_of(object.kind, box);
@@ -169,7 +170,7 @@ bool ObjectShapes::fits(std::uint32_t object, const Bound& bound) const {
 }
 
 Result<void> ObjectShapes::scale(std::uint32_t object, const glm::dmat3& linear) {
-    Entry& entry = entries_[object];
+    Entry& entry = *entries_[object];
     entry.nowhere = false;
     if (is_rigid(linear) || has_nothing(linear)) {
         entry.scaled.reset();
@@ -206,7 +207,7 @@ Result<void> ObjectShapes::check(const convex::Shape& shape, const glm::dmat3& l
 }
 
 Bound ObjectShapes::cover(std::uint32_t object, const Bound& bound) {
-    Entry& entry = entries_[object];
+    Entry& entry = *entries_[object];
     entry.given = {};
     if (!entry.own || fits(object, bound) || !shape(object).is_bounded()) return bound;
     if (bound.kind != BoundKind::sphere && is_rigid(glm::dmat3(bound.box.axes))) {  // as in frame_of
@@ -225,7 +226,7 @@ Bound ObjectShapes::cover(std::uint32_t object, const Bound& bound) {
 // The scene's box holds the image of all that the mesh's box holds. So a rigid transform needs a look at the shape only
 // where the shape or the mesh is another.
 Obb ObjectShapes::cover(std::uint32_t object, scene::InstanceId instance, const scene::Scene& scene, bool alone) {
-    Entry& entry = entries_[object];
+    Entry& entry = *entries_[object];
     const Obb& box = scene.world_boxes()[instance];
     const Transform& world = scene.world(scene.node_of(instance));
     if (entry.nowhere || has_nothing(world.linear) || !shape(object).is_bounded()) return box;

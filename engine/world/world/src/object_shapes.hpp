@@ -28,14 +28,14 @@ class ObjectShapes {
     // Takes out an object's shape, without its pose. The object has none then. Requires that it has one.
     [[nodiscard]] PlacedShape take(std::uint32_t object);
 
-    [[nodiscard]] bool has(std::uint32_t object) const { return object < entries_.size() && entries_[object].own; }
+    [[nodiscard]] bool has(std::uint32_t object) const { return is_known(object) && entries_[object]->own; }
     // As its object's transform scales it.
     [[nodiscard]] const convex::Shape& shape(std::uint32_t object) const {
-        const Entry& entry = entries_[object];
+        const Entry& entry = *entries_[object];
         return entry.scaled ? entry.scaled->shape() : *entry.own;
     }
     // As it was set.
-    [[nodiscard]] const convex::Shape& own_shape(std::uint32_t object) const { return *entries_[object].own; }
+    [[nodiscard]] const convex::Shape& own_shape(std::uint32_t object) const { return *entries_[object]->own; }
     // Where it stands as of the last update. `box` is the object's.
     [[nodiscard]] std::optional<RigidTransform> pose_of(std::uint32_t id, const Object& object, const Obb& box,
                                                         const scene::Scene& scene) const;
@@ -46,9 +46,9 @@ class ObjectShapes {
 
     // Whether the object's box is larger than the bound that it was given.
     [[nodiscard]] bool is_grown(std::uint32_t object) const {
-        return object < entries_.size() && entries_[object].given.kind != BoundKind::none;
+        return is_known(object) && entries_[object]->given.kind != BoundKind::none;
     }
-    [[nodiscard]] const Bound& given(std::uint32_t object) const { return entries_[object].given; }
+    [[nodiscard]] const Bound& given(std::uint32_t object) const { return entries_[object]->given; }
     // A box in the shape's frame covers the shape if it has these half extents, at least; −1: any does.
     [[nodiscard]] glm::vec3 least_half_extents(std::uint32_t object) const;
     // Whether an object with this bound covers its shape with it. Quick; false where that is not sure.
@@ -85,9 +85,10 @@ class ObjectShapes {
         bool exceeds_mesh = false;
     };
     void list_unbounded(std::uint32_t object);
+    [[nodiscard]] bool is_known(std::uint32_t object) const { return object < entries_.size() && entries_[object]; }
 
-    Vector<Entry> entries_;  // by object
-    std::size_t count_ = 0;  // shapes
+    Vector<Owner<Entry>> entries_;  // by object; none, unless the object has or had a shape
+    std::size_t count_ = 0;         // shapes
     Vector<std::uint32_t> unbounded_, fresh_;
 };
 
