@@ -69,6 +69,14 @@ TEST_SUITE("pvs/pvs") {
                                             : Cells::convex(convex).value();
             const Pvs pvs = baked(geometry, cells);
             const PairCounts counts = pvs.counts();
+            std::uint64_t of_state[3] = {};
+            for (std::uint32_t c = 0; c < pvs.cells().size(); ++c)
+                for (std::uint32_t object = 0; object < pvs.object_count(); ++object)
+                    if (pvs.kind(c) != CellKind::solid && pvs.is_baked(object))
+                        ++of_state[static_cast<std::size_t>(pvs.state(c, object))];
+            CHECK(counts.hidden == of_state[static_cast<std::size_t>(PairState::hidden)]);
+            CHECK(counts.unseen == of_state[static_cast<std::size_t>(PairState::unseen)]);
+            CHECK(counts.seen == of_state[static_cast<std::size_t>(PairState::seen)]);
             CHECK(counts.hidden > 0);
             CHECK(counts.unseen > 0);
             CHECK(counts.seen > 0);

@@ -122,6 +122,11 @@ TEST_SUITE("collide/broadphase life") {
                     CHECK(are_same(rejected, broadphase.rejected()));
                     CHECK(broadphase.statistics().rejected == rejected.size());
                     CHECK(broadphase.statistics().box_pairs == now.size());
+                    const BatchStatistics& decided = broadphase.statistics().boxes;
+                    CHECK(broadphase.statistics().bound_pairs == decided.separated_by_face_a +
+                                                                     decided.separated_by_face_b +
+                                                                     decided.separated_by_edges + decided.hits);
+                    CHECK(decided.refined <= broadphase.statistics().bound_pairs);
                     // What was tested: all pairs, or those of what was named or is new.
                     for (const std::uint32_t item : moved) is_new[item] = true;
                     for (std::size_t item = old_count; item < boxes.size(); ++item) is_new[item] = true;

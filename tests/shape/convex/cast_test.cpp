@@ -149,6 +149,14 @@ TEST_SUITE("convex/cast") {
                 continue;
             }
             ++hits;
+            // As many steps are enough. The last one finds the shapes near, and makes none: two less are too few.
+            const auto with_steps = [&](int steps) {
+                return cast({a, pose_a}, {}, {b, pose_b}, flying(way), {.tolerance = 1e-9, .max_steps = steps}).value();
+            };
+            REQUIRE(impact.steps >= 1);
+            CHECK(with_steps(impact.steps).time == impact.time);
+            CHECK(with_steps(impact.steps).result == CastResult::hit);
+            if (impact.steps > 2) CHECK(with_steps(impact.steps - 2).result == CastResult::unresolved);
             CHECK_FALSE(met_by(impact.time - 1e-5));
             CHECK(met_by(impact.time + 1e-2));
         }

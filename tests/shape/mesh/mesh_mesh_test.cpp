@@ -135,6 +135,10 @@ TEST_SUITE("mesh/mesh_mesh") {
             MeshStatistics statistics;
             intersecting_triangles(tree_a, tree_b, pose, pairs, &statistics);
             CHECK(pairs == expected);
+            CHECK(statistics.triangle_tests >= pairs.size());
+            CHECK(statistics.triangle_tests <= tree_a.triangle_count() * tree_b.triangle_count());
+            CHECK(statistics.exact_tests <= statistics.triangle_tests);
+            CHECK(statistics.box_tests > 0);
             CHECK(intersects(tree_a, tree_b, pose) == !expected.empty());
             CHECK(intersects(tree_b, tree_a, inverse(pose)) == !expected.empty());
             Vector<MeshContact> found;

@@ -243,6 +243,27 @@ TEST_SUITE("occlude/find_occluders") {
         check_found(wall, found, Sides::front, random);
     }
 
+    TEST_CASE("pieces, shadows and gains of bodies far apart are those of each") {
+        TriangleMesh mesh = box_mesh(glm::vec3(0), glm::vec3(2));
+        append(mesh, box_mesh(glm::vec3(50, 0, 0), glm::vec3(51, 1, 1)));
+        mesh.positions.insert(mesh.positions.end(), {{0, 0, 50}, {4, 0, 50}, {4, 4, 50}, {0, 4, 50}});
+        mesh.indices.insert(mesh.indices.end(), {16, 17, 18, 16, 18, 19});
+        const FoundOccluders found = found_in(mesh, {.sides = Sides::both, .least_gain = 0.001});
+        CHECK(found.pieces == 3);
+        CHECK(found.closed_pieces == 2);
+        REQUIRE(found.occluders.size() == 3);
+        // F/4 of cubes of side 2 and 1, A/2 of the square.
+        double sum = 0.0;
+        for (const FoundOccluder& each : found.occluders) {
+            const double shadow = each.kind == OccluderKind::patch ? 8.0 : each.piece_bounds.min.x > 10.0 ? 1.5 : 6.0;
+            CHECK(each.mean_shadow == doctest::Approx(shadow));
+            CHECK(each.gain == doctest::Approx(shadow).epsilon(0.1));
+            sum += each.gain;
+        }
+        CHECK(found.covered == doctest::Approx(sum));
+        CHECK(found.mean_shadow == doctest::Approx(15.5).epsilon(0.1));
+    }
+
     TEST_CASE("the budgets hold, and what comes first gains most for its edges") {
         std::mt19937_64 random(12);
         TriangleMesh mesh;

@@ -108,6 +108,31 @@ TEST_SUITE("occlude/find_visible") {
         }
     }
 
+    TEST_CASE("of a list each item is tested, and those are hidden that the buffer hides") {
+        Random random(79);
+        std::vector<Obb> boxes(2000);
+        for (Obb& box : boxes) {
+            box.center = {random.uniform(-6.0, 6.0), random.uniform(-6.0, 6.0), random.uniform(-12.0, -2.0)};
+            box.half_extents = glm::vec3(0.05f);
+        }
+        occlude::OccluderSet walls;
+        Obb wall;
+        wall.center = {0.5, 0.0, -4.0};
+        wall.half_extents = {1.0f, 1.0f, 0.1f};
+        REQUIRE(walls.place(wall).has_value());
+        auto buffer = *occlude::OcclusionBuffer::create({160, 90});
+        buffer.draw(walls, *occlude::occlusion_view_of(Camera{}));
+        CHECK(buffer.statistics().pieces_drawn == 1);
+        CHECK(buffer.statistics().triangles_drawn == 0);
+        occlude::VisibleSet visible;
+        occlude::find_visible(boxes, {}, buffer, visible);
+        std::uint64_t hidden = 0;
+        for (const Obb& box : boxes) hidden += buffer.hides(box) ? 1 : 0;
+        CHECK(hidden > 50);
+        CHECK(visible.statistics().items_tested == boxes.size());
+        CHECK(visible.statistics().items_hidden == hidden);
+    }
+
     TEST_CASE("w of every point in a view is above its least_w, which is no less than half of w on the near plane") {
         Random random(78);
         for (int round = 0; round < 200; ++round) {

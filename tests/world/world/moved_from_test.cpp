@@ -13,7 +13,9 @@
 #include <crofton/pvs/pvs.hpp>
 #include <crofton/scene/scene.hpp>
 #include <crofton/triangulate/triangulate.hpp>
+#include <crofton/world/object_manifold.hpp>
 #include <crofton/world/world.hpp>
+#include <error_of.hpp>
 #include <utility>
 
 #include "box_at.hpp"
@@ -31,6 +33,8 @@ TriangleMesh cube() {
                     2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
     return mesh;
 }
+
+const TriangleMesh kCube = cube();
 
 World one_box() {
     World world;
@@ -163,6 +167,78 @@ TEST_SUITE("world/moved_from") {
         CHECK(found.all().empty());
         convex::contact_manifolds({sphere, place}, {sphere, place}, {}, found);
         CHECK(found.all().size() == 1);
+    }
+
+    TEST_CASE("a moved-from World answers as an empty one, knows none of the old handles, and may be used again") {
+        World world({.contact_margin = 0.5});
+        const auto sphere = *convex::Shape::sphere(1.0);
+        const auto mesh = *world.add_mesh({.positions = kCube.positions, .indices = kCube.indices});
+        const ObjectHandle box = *world.add({.bound = Bound(box_at({0, 0, -5}, 1.0f))}),
+                           ball = *world.add({.shape = &sphere});
+        const NodeHandle node = *world.add_node();
+        REQUIRE(world.update().has_value());
+        World kept(std::move(world));
+        CHECK(kept.object_count() == 2);
+
+        const auto is_empty = [&](const World& empty) {
+            ViewResult visible;
+            MultiViewResult views;
+            Vector<ObjectHit> hits;
+            Vector<ObjectRef> found{{box, 7}};
+            Vector<ShapeHit> shape_hits;
+            Vector<ObjectManifold> manifolds;
+            Vector<OccluderRef> occluders;
+            const ViewRequest requests[] = {forward(), forward()};
+            const RigidTransform here;
+            CHECK(empty.object_count() == 0);
+            CHECK_FALSE(empty.contains(box));
+            CHECK_FALSE(empty.contains(node));
+            CHECK_FALSE(empty.contains(mesh));
+            CHECK(error_of(empty.user_of(box)).code == ErrorCode::stale_handle);
+            CHECK_FALSE(empty.box_of(box).has_value());
+            CHECK_FALSE(empty.transform_of(ball).has_value());
+            CHECK_FALSE(empty.place_of(box).has_value());
+            CHECK(empty.occluders_of(mesh).empty());
+            CHECK(empty.clusters_of(mesh) == nullptr);
+            CHECK(empty.statistics().objects == 0);
+            CHECK(empty.tree().item_count() == 0);
+            CHECK(empty.pairs().empty());
+            CHECK(empty.contacts().empty());
+            CHECK(empty.view(forward(), visible).has_value());
+            CHECK(visible.size() == 0);
+            CHECK(empty.view(requests, views).has_value());
+            CHECK(views.size() == 0);
+            CHECK(empty.drawn_occluders(visible, occluders).has_value());
+            CHECK_FALSE(empty.raycast({{0, 0, 0}, {0, 0, -1}}).has_value());
+            CHECK_FALSE(empty.raycast_any({{0, 0, 0}, {0, 0, -1}}));
+            empty.raycast_all({{0, 0, 0}, {0, 0, -1}}, hits);
+            CHECK(hits.empty());
+            empty.overlap(Sphere{{0, 0, -5}, 1.0}, found);
+            CHECK(found.empty());
+            empty.overlap(sphere, here, found);
+            CHECK(found.empty());
+            CHECK_FALSE(empty.closest(Sphere{{0, 0, -5}, 1.0}, 10.0).has_value());
+            CHECK_FALSE(empty.closest(sphere, here, 10.0).has_value());
+            const auto hit = empty.cast(sphere, here, {{0, 0, -9}}, {});
+            CHECK((hit.has_value() && !hit->has_value()));
+            CHECK(empty.cast_all(sphere, here, {{0, 0, -9}}, {}, shape_hits).has_value());
+            CHECK(empty.contact_manifolds(sphere, here, {}, manifolds).has_value());
+            CHECK(manifolds.empty());
+        };
+        is_empty(world);
+        CHECK(error_of(world.remove(box)).code == ErrorCode::stale_handle);
+        CHECK(error_of(world.set_transform(node, {})).code == ErrorCode::stale_handle);
+        CHECK(error_of(world.remove(mesh)).code == ErrorCode::stale_handle);
+        CHECK(world.update().has_value());
+        is_empty(world);
+
+        World again = World();
+        const World other(std::move(again));
+        const ObjectHandle added = *again.add({.shape = &sphere});
+        CHECK(again.update().has_value());
+        CHECK(again.contains(added));
+        CHECK_FALSE(again.contains(ball));
+        CHECK(again.raycast({{0, 0, 5}, {0, 0, -1}}).has_value());
     }
 
     TEST_CASE("every class that may be moved can be assigned to and destroyed afterwards") {

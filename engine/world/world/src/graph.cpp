@@ -49,6 +49,7 @@ Result<void> World::State::check(MeshHandle mesh, std::uint64_t item) const {
 }
 
 Result<MeshHandle> World::add_mesh(const MeshDescription& description) {
+    if (auto outside = state_->check_outside(); !outside) return outside.error();
     State& s = *state_;
     auto copy = to_mesh(description);
     if (!copy) return copy.error();
@@ -73,6 +74,7 @@ Result<MeshHandle> World::add_mesh(const MeshDescription& description) {
 }
 
 Result<void> World::replace_mesh(MeshHandle mesh, const MeshDescription& description) {
+    if (auto outside = state_->check_outside(); !outside) return outside.error();
     if (auto known = state_->check(mesh, mesh.index); !known) return known;
     auto copy = to_mesh(description);
     if (!copy) return copy.error();
@@ -95,6 +97,7 @@ Result<void> World::replace_mesh(MeshHandle mesh, const MeshDescription& descrip
 }
 
 Result<void> World::set_vertices(MeshHandle mesh, PointsView positions) {
+    if (auto outside = state_->check_outside(); !outside) return outside.error();
     State& s = *state_;
     if (auto known = s.check(mesh, mesh.index); !known) return known;
     // Before they are read: a wrong number leads beyond the caller's array.
@@ -114,6 +117,7 @@ Result<void> World::set_vertices(MeshHandle mesh, PointsView positions) {
 }
 
 Result<void> World::remove(MeshHandle mesh) {
+    if (auto outside = state_->check_outside(); !outside) return outside.error();
     if (auto known = state_->check(mesh, mesh.index); !known) return known;
     state_->shapes.note(mesh.index);
     auto removed = state_->scene.remove_mesh(mesh.index);
@@ -126,6 +130,7 @@ Result<void> World::remove(MeshHandle mesh) {
 }
 
 Result<NodeHandle> World::add_node(const NodeDescription& description) {
+    if (auto outside = state_->check_outside(); !outside) return outside.error();
     State& s = *state_;
     scene::NodeId parent = scene::kNone;
     if (!description.parent.is_null()) {
@@ -139,6 +144,7 @@ Result<NodeHandle> World::add_node(const NodeDescription& description) {
 }
 
 Result<void> World::remove(NodeHandle node) {
+    if (auto outside = state_->check_outside(); !outside) return outside.error();
     State& s = *state_;
     if (auto known = s.check(node, node.index); !known) return known;
     s.scene.visit_subtree(
@@ -188,10 +194,12 @@ Result<void> World::State::check_shapes_below(scene::NodeId node, std::uint64_t 
 }
 
 Result<void> World::set_transform(NodeHandle node, const Transform& transform) {
+    if (auto outside = state_->check_outside(); !outside) return outside.error();
     return state_->set_transform(node, transform, node.index);
 }
 
 Result<void> World::set_transforms(Strided<NodeHandle> nodes, Strided<Transform> transforms) {
+    if (auto outside = state_->check_outside(); !outside) return outside.error();
     if (nodes.size() != transforms.size()) return fail_sizes();
     State& s = *state_;
     constexpr std::size_t kAtOnce = 64;
@@ -218,6 +226,7 @@ Result<void> World::set_transforms(Strided<NodeHandle> nodes, Strided<Transform>
 }
 
 Result<void> World::set_parent(NodeHandle node, NodeHandle parent) {
+    if (auto outside = state_->check_outside(); !outside) return outside.error();
     if (auto known = state_->check(node, node.index); !known) return known;
     if (!parent.is_null())
         if (auto known = state_->check(parent, parent.index); !known) return known;
@@ -231,6 +240,7 @@ Result<void> World::set_parent(NodeHandle node, NodeHandle parent) {
 }
 
 Result<void> World::set_layers(NodeHandle node, std::uint32_t layers) {
+    if (auto outside = state_->check_outside(); !outside) return outside.error();
     if (auto known = state_->check(node, node.index); !known) return known;
     return state_->scene.set_layer_mask(node.index, layers);
 }

@@ -89,6 +89,7 @@ Result<void> World::State::attach_mesh(world::Object& object, const ObjectDescri
 }
 
 Result<ObjectHandle> World::add(const ObjectDescription& description) {
+    if (auto outside = state_->check_outside(); !outside) return outside.error();
     State& s = *state_;
     world::Object object;
     object.layers = description.layers;
@@ -126,6 +127,7 @@ Result<ObjectHandle> World::add(const ObjectDescription& description) {
 }
 
 Result<void> World::add(Strided<ObjectDescription> descriptions, std::span<ObjectHandle> objects) {
+    if (auto outside = state_->check_outside(); !outside) return outside.error();
     if (descriptions.size() != objects.size())
         return fail(ErrorCode::invalid_argument, kNoItem, "world: there must be as many handles as descriptions");
     state_->make_room(objects.size());
@@ -141,6 +143,7 @@ Result<void> World::add(Strided<ObjectDescription> descriptions, std::span<Objec
 }
 
 Result<void> World::reserve(std::size_t objects) {
+    if (auto outside = state_->check_outside(); !outside) return outside.error();
     return detail::recover([&] { return state_->reserve(objects); });
 }
 
@@ -166,6 +169,7 @@ void World::State::mark_removed(std::uint32_t object) {
 }
 
 Result<void> World::remove(ObjectHandle handle) {
+    if (auto outside = state_->check_outside(); !outside) return outside.error();
     State& s = *state_;
     if (auto known = s.check(handle, handle.index); !known) return known;
     const world::Object& object = s.table.objects[handle.index];
@@ -187,10 +191,12 @@ Result<void> World::State::set_transform(ObjectHandle handle, const Transform& t
 }
 
 Result<void> World::set_transform(ObjectHandle object, const Transform& transform) {
+    if (auto outside = state_->check_outside(); !outside) return outside.error();
     return state_->set_transform(object, transform, object.index);
 }
 
 Result<void> World::set_transforms(Strided<ObjectHandle> objects, Strided<Transform> transforms) {
+    if (auto outside = state_->check_outside(); !outside) return outside.error();
     return for_each_pair(objects, transforms, [&](ObjectHandle object, const Transform& transform, std::size_t i) {
         return state_->set_transform(object, transform, i);
     });
@@ -224,10 +230,12 @@ bool World::State::stage_box_of_mover(std::uint32_t id, BoundKind kind, const Ob
 }
 
 Result<void> World::set_bound(ObjectHandle object, const Bound& bound) {
+    if (auto outside = state_->check_outside(); !outside) return outside.error();
     return state_->set_bound(object, bound, object.index);
 }
 
 Result<void> World::set_bounds(Strided<ObjectHandle> objects, Strided<Obb> boxes) {
+    if (auto outside = state_->check_outside(); !outside) return outside.error();
     if (objects.size() != boxes.size()) return fail_sizes();
     State& s = *state_;
     constexpr std::size_t kAtOnce = 128;  // are checked, and then found in the cache
@@ -246,6 +254,7 @@ Result<void> World::set_bounds(Strided<ObjectHandle> objects, Strided<Obb> boxes
 }
 
 Result<void> World::set_mesh(ObjectHandle object, MeshHandle mesh) {
+    if (auto outside = state_->check_outside(); !outside) return outside.error();
     State& s = *state_;
     if (auto known = s.check(object, object.index); !known) return known;
     if (auto known = s.check(mesh, mesh.index); !known) return known;
@@ -259,6 +268,7 @@ Result<void> World::set_mesh(ObjectHandle object, MeshHandle mesh) {
 }
 
 Result<void> World::set_shape(ObjectHandle object, const convex::Shape* shape) {
+    if (auto outside = state_->check_outside(); !outside) return outside.error();
     State& s = *state_;
     if (auto known = s.check(object, object.index); !known) return known;
     const std::uint32_t id = object.index, instance = s.table.objects[id].instance;
@@ -280,6 +290,7 @@ Result<void> World::set_shape(ObjectHandle object, const convex::Shape* shape) {
 }
 
 Result<void> World::set_hidden(ObjectHandle object, bool hidden) {
+    if (auto outside = state_->check_outside(); !outside) return outside.error();
     if (world::is_region_index(object.index)) return state_->regions.set_hidden(object, hidden);
     if (auto known = state_->check(object, object.index); !known) return known;
     state_->table.objects.edit(object.index).shown = !hidden;
@@ -288,6 +299,7 @@ Result<void> World::set_hidden(ObjectHandle object, bool hidden) {
 }
 
 Result<void> World::set_layers(ObjectHandle object, std::uint32_t layers) {
+    if (auto outside = state_->check_outside(); !outside) return outside.error();
     if (auto known = state_->check(object, object.index); !known) return known;
     world::Object& changed = state_->table.objects.edit(object.index);
     if (changed.instance != kNoIndex) return state_->scene.set_instance_layers(changed.instance, layers);
@@ -297,6 +309,7 @@ Result<void> World::set_layers(ObjectHandle object, std::uint32_t layers) {
 }
 
 Result<void> World::set_collides_with(ObjectHandle object, std::uint32_t layers) {
+    if (auto outside = state_->check_outside(); !outside) return outside.error();
     if (auto known = state_->check(object, object.index); !known) return known;
     state_->table.objects.edit(object.index).collides_with = layers;
     state_->pair_changes.objects.push_back(object.index);
@@ -304,6 +317,7 @@ Result<void> World::set_collides_with(ObjectHandle object, std::uint32_t layers)
 }
 
 Result<void> World::set_user(ObjectHandle object, std::uint64_t user) {
+    if (auto outside = state_->check_outside(); !outside) return outside.error();
     if (auto known = state_->check(object, object.index); !known) return known;
     state_->table.users.set(object.index, user);
     state_->pair_changes.objects.push_back(object.index);

@@ -16,11 +16,13 @@ Result<void> World::State::set_found_occluders(scene::MeshId mesh, const occlude
 }
 
 Result<void> World::find_occluders(MeshHandle mesh, const occlude::FindOptions& options) {
+    if (auto outside = state_->check_outside(); !outside) return outside.error();
     if (auto known = state_->check(mesh, mesh.index); !known) return known;
     return state_->set_found_occluders(mesh.index, options);
 }
 
 Result<void> World::set_occluders(MeshHandle mesh, std::span<const occlude::FoundOccluder> occluders) {
+    if (auto outside = state_->check_outside(); !outside) return outside.error();
     if (auto known = state_->check(mesh, mesh.index); !known) return known;
     return state_->occluders.set(mesh.index, occluders);
 }
@@ -37,6 +39,7 @@ const depth::ClusteredMesh* World::clusters_of(MeshHandle mesh) const {
 }
 
 Result<void> World::set_occludes(ObjectHandle object, bool occludes) {
+    if (auto outside = state_->check_outside(); !outside) return outside.error();
     if (auto known = state_->check(object, object.index); !known) return known;
     world::Object& changed = state_->table.objects.edit(object.index);
     if (changed.instance == kNoIndex || state_->is_shape_alone(changed))
@@ -74,6 +77,7 @@ Result<void> World::State::check_viewed(const ViewResult& visible) const {
 }
 
 Result<void> World::hidden_by(ObjectHandle object, const ViewResult& visible, Vector<OccluderRef>& occluders) const {
+    if (auto updated = state_->check_updated(); !updated) return updated;
     const bool of_region = state_->regions.contains(object);
     if (auto known = state_->check(object, object.index); !of_region && !known) return known;
     if (auto own = state_->check_viewed(visible); !own) return own;
@@ -90,6 +94,7 @@ Result<void> World::hidden_by(ObjectHandle object, const ViewResult& visible, Ve
 }
 
 Result<void> World::drawn_occluders(const ViewResult& visible, Vector<OccluderRef>& occluders) const {
+    if (auto updated = state_->check_updated(); !updated) return updated;
     if (auto own = state_->check_viewed(visible); !own) return own;
     occluders.clear();
     if (!visible.has_occlusion()) return {};

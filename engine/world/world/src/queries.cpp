@@ -104,6 +104,7 @@ double farthest(const Aabb& a, const Aabb& b) {
 }  // namespace
 
 void World::State::visit_along(const Ray& ray, const QueryFilter& filter, collide::RayVisitor visit) const {
+    if (is_updating()) return;
     Ray rest = ray;
     if (!filter.ignored.empty()) {
         const auto visit_wanted = [&](std::uint32_t id, double t) {
@@ -293,6 +294,7 @@ bool World::State::is_ignored(const QueryFilter& filter, std::uint32_t id) const
 
 void World::State::visit_near(const Aabb& bounds, double distance, const QueryFilter& filter,
                               collide::NearVisitor visit) const {
+    if (is_updating()) return;
     if (!filter.ignored.empty()) {
         double rest = distance;
         const auto visit_wanted = [&](std::uint32_t id) { return is_ignored(filter, id) ? rest : rest = visit(id); };

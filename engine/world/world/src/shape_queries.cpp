@@ -162,6 +162,7 @@ struct World::State::Sweep {
     const QueryFilter& filter;
 
     [[nodiscard]] Result<void> check() const {
+        if (auto updated = world.check_updated(); !updated) return updated;
         if (auto good = crofton::check(shape.shape, shape.pose); !good) return good;
         // Bad motions and options are told also where nothing is near.
         static const convex::Shape kPoint = *convex::Shape::sphere(0.0);
@@ -302,6 +303,7 @@ Result<void> World::contact_manifolds(const convex::Shape& probe, const RigidTra
                                       const convex::ManifoldOptions& options, Vector<ObjectManifold>& found,
                                       const QueryFilter& filter) const {
     found.clear();
+    if (auto updated = state_->check_updated(); !updated) return updated;
     if (auto good = check(probe, pose); !good) return good;
     if (!(options.margin >= 0.0 && options.margin <= kMaxCoordinate))
         return fail(ErrorCode::out_of_range, kNoItem, "world: a margin of contacts must be finite and at least 0");

@@ -195,6 +195,8 @@ Result<void> World::check_receivers(const ViewRequest& request, const ViewResult
 }
 
 Result<void> World::view(const ViewRequest& request, ViewResult& visible, Executor& executor) const {
+    if (auto updated = state_->check_updated(); !updated) return updated;
+    const State::Call call(*state_, false);
     const auto eye = eye_of(request, kNoItem);
     if (!eye) return eye.error();
     if (auto good = check_receivers(request, &visible, kNoItem); !good) return good;
@@ -240,6 +242,8 @@ void World::view_own(const ViewRequest& request, const world::Eye& eye, ViewResu
 }
 
 Result<void> World::view(std::span<const ViewRequest> requests, MultiViewResult& visible, Executor& executor) const {
+    if (auto updated = state_->check_updated(); !updated) return updated;
+    const State::Call call(*state_, false);
     if (auto few = cull::check_view_count(requests.size()); !few) return few;
     std::array<Eye, cull::kMaxViews> eyes;
     for (std::size_t v = 0; v < requests.size(); ++v) {
@@ -307,6 +311,7 @@ void World::view_each(std::span<const ViewRequest> requests, std::span<const wor
     }
     const bool has_regions = !state_->regions.is_empty();
     executor.parallel_for(requests.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
+        const State::Call call(*state_, false);
         for (std::size_t v = begin; v < end; ++v) {
             const bool with_regions = has_regions && requests[v].picture;
             ViewRequest request = requests[v];

@@ -16,6 +16,27 @@ World::~World() = default;
 World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
 
+World::StateOwner::StateOwner(Owner<State> state) : state_(std::move(state)) {}
+World::State* World::StateOwner::renew() {
+    state_ = Owner<State>::make(WorldOptions{});
+    return state_.get();
+}
+World::State* World::StateOwner::empty() {
+    static State state{WorldOptions{}};
+    return &state;
+}
+
+constinit thread_local const World::State::Call* World::State::Call::innermost_ = nullptr;
+
+Result<void> World::State::check_outside() const {
+    if (!Call::is_within(*this, false)) return {};
+    return fail(ErrorCode::invalid_argument, kNoItem, "World: a callback of a view or update may not change the World");
+}
+Result<void> World::State::check_updated() const {
+    if (!is_updating()) return {};
+    return fail(ErrorCode::invalid_argument, kNoItem, "World: a callback of an update may not ask the World");
+}
+
 bool World::contains(ObjectHandle object) const {
     if (world::is_region_index(object.index)) return state_->regions.contains(object);
     return state_->table.contains(object);
@@ -36,18 +57,22 @@ const boxtree::BoxTree& World::tree() const {
     return state_->index.tree();
 }
 std::span<const ObjectPair> World::pairs() const {
+    if (state_->is_updating()) return {};
     return state_->region_pairs.is_used() ? state_->region_pairs.pairs() : state_->own_pairs();
 }
 std::span<const Contact> World::contacts() const {
     const State& s = *state_;
+    if (s.is_updating()) return {};
     return s.contact_list.get(s.region_pairs.is_used() ? s.region_pairs.contacts() : s.own_contacts(),
                               s.shape_contacts.contacts());
 }
 
 Result<RegionHandle> World::attach(const Region& region, const glm::dvec3& origin) {
+    if (auto outside = state_->check_outside(); !outside) return outside.error();
     return state_->regions.attach(region, origin);
 }
 Result<void> World::detach(RegionHandle region) {
+    if (auto outside = state_->check_outside(); !outside) return outside.error();
     return state_->regions.detach(region);
 }
 bool World::contains(RegionHandle region) const {
@@ -231,6 +256,8 @@ void World::State::release_scratch() {
 
 Result<void> World::update(Executor& executor) {
     State& s = *state_;
+    if (auto outside = s.check_outside(); !outside) return outside;
+    const State::Call call(s, true);
     const TraceHooks& trace = s.options.trace;
     const world::TraceZone zone(trace, "World::update");
     s.statistics = {};

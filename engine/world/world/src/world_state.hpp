@@ -59,6 +59,32 @@ struct Generations {
 };
 
 struct World::State {
+    // A call that lasts, on this thread: an update, or a view. Within it hooks and executors run, which may call back.
+    class Call {
+      public:
+        Call(const State& state, bool changes) : state_(&state), changes_(changes), outer_(innermost_) {
+            innermost_ = this;
+        }
+        ~Call() { innermost_ = outer_; }
+        Call(const Call&) = delete;
+        Call& operator=(const Call&) = delete;
+        [[nodiscard]] static bool is_within(const State& state, bool changes_only) {
+            const Call* call = innermost_;
+            while (call != nullptr && !(call->state_ == &state && (call->changes_ || !changes_only)))
+                call = call->outer_;
+            return call != nullptr;
+        }
+
+      private:
+        const State* state_;
+        bool changes_;
+        const Call* outer_;
+        static constinit thread_local const Call* innermost_;
+    };
+    [[nodiscard]] bool is_updating() const { return Call::is_within(*this, true); }
+    [[nodiscard]] Result<void> check_outside() const;  // of views and updates: for changes
+    [[nodiscard]] Result<void> check_updated() const;  // for questions
+
     explicit State(const WorldOptions& chosen) : State(chosen, world::next_first_generation()) {}
     State(const WorldOptions& chosen, std::uint32_t first_generation)
         : options(chosen),

@@ -83,6 +83,12 @@ struct WorldStatistics {
 // A call that returns an error changes nothing. Calls with many handles apply all valid items and return the first
 // error, whose item is the place among the handles. Every call fails for a stale handle, and for numbers that are NaN,
 // infinite or out of range (validate(Obb), validate(Transform)).
+//
+// Executors, trace hooks and log handlers run within calls, and may call back: from within update() changes and
+// questions of that World are errors, or find nothing where they return no error; from within view() changes are
+// errors. They must not destroy it.
+//
+// A World that has been moved from is an empty one with default options, and may be used again.
 class World {
   public:
     explicit World(const WorldOptions& options = {});
@@ -332,7 +338,22 @@ class World {
                      MultiViewResult& visible) const;
     void keep_in_picture(const ViewRequest& request, ViewResult& visible, Executor& executor) const;
     struct State;
-    Owner<State> state_;
+    // A World that was moved from has no state: its queries get that of an empty World, and its changes begin a new
+    // one.
+    class StateOwner {
+      public:
+        explicit StateOwner(Owner<State> state);
+        State* operator->() { return state_ ? state_.get() : renew(); }
+        State& operator*() { return *operator->(); }
+        State* operator->() const { return state_ ? state_.get() : empty(); }
+        State& operator*() const { return *operator->(); }
+
+      private:
+        State* renew();
+        static State* empty();
+        Owner<State> state_;
+    };
+    StateOwner state_;
 };
 
 }  // namespace crofton
