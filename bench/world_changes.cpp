@@ -221,8 +221,8 @@ void queries_among_movers() {
     std::printf("queries among spheres of which some move, and some of these are replaced in each update, µs\n");
     std::printf("%8s %8s %8s %9s %9s %9s %9s %9s %9s %9s\n", "objects", "moving", "replaced", "update", "first ray",
                 "ray", "overlap", "closest", "anywhere", "far cast");
-    for (const std::size_t moving : {0, 100, 1000, 10000}) queries(10000, moving, 0);
-    for (const std::size_t count : {1000, 10000}) queries(count, count, count / 100);
+    for (const unsigned moving : {0u, 100u, 1000u, 10000u}) queries(10000, moving, 0);
+    for (const unsigned count : {1000u, 10000u}) queries(count, count, count / 100);
 }
 
 }  // namespace crofton::bench
