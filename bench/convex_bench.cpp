@@ -166,20 +166,22 @@ void few_points(benchmark::State& state) {
 }
 BENCHMARK(few_points)->Name("hull manifold 0.01, points/crofton")->Arg(8)->Arg(16)->Arg(32);
 
-// Cubes whose faces touch exactly: in one frame, as stacked crates are, or each turned about the normal.
-void touching_boxes(benchmark::State& state, Ask ask, bool turned) {
-    const Shape cube = Shape::box(glm::vec3(0.5f)).value();
+// Cubes whose faces touch exactly: in one frame, as stacked crates are, or each turned about the normal. A small one on
+// top has all of its face on the other: nothing is clipped, and no points are chosen.
+void touching_boxes(benchmark::State& state, Ask ask, bool turned, bool small = false) {
+    const Shape cube = Shape::box(glm::vec3(0.5f)).value(), upper = Shape::box(glm::vec3(small ? 0.2f : 0.5f)).value();
     const auto yaw = [turned](double angle) {
         const double c = std::cos(angle), s = std::sin(angle);
         return turned ? glm::dmat3(c, 0, -s, 0, 1, 0, s, 0, c) : glm::dmat3(1.0);
     };
-    const RigidTransform low{yaw(0.3), {}}, top{yaw(0.7), {0.1, 1.0, 0.2}};
-    for (auto _ : state) benchmark::DoNotOptimize(crofton_ask(ask, {cube, low}, {cube, top}, nullptr));
+    const RigidTransform low{yaw(0.3), {}}, top{yaw(0.7), {0.1, 0.5 + (small ? double{0.2f} : 0.5), 0.2}};
+    for (auto _ : state) benchmark::DoNotOptimize(crofton_ask(ask, {cube, low}, {upper, top}, nullptr));
 }
 BENCHMARK_CAPTURE(touching_boxes, a, Ask::meet, false)->Name("box touching yes-no/crofton");
 BENCHMARK_CAPTURE(touching_boxes, b, Ask::manifold, false)->Name("box touching manifold/crofton");
 BENCHMARK_CAPTURE(touching_boxes, c, Ask::meet, true)->Name("box touching, turned, yes-no/crofton");
 BENCHMARK_CAPTURE(touching_boxes, d, Ask::manifold, true)->Name("box touching, turned, manifold/crofton");
+BENCHMARK_CAPTURE(touching_boxes, e, Ask::manifold, true, true)->Name("box touching, turned, small, manifold/crofton");
 
 // `spin` radians a second about an axis across the way.
 void crofton_cast(benchmark::State& state, int points, double spin) {

@@ -138,14 +138,15 @@ std::vector<double> update_times(std::size_t count, const WorldOptions& options,
     return times;
 }
 
-// Median, 99th percentile and worst; where many change, in the first update alone, the worst.
+// Median, worst of all but the first two, and worst: the first change after loading finds nothing in the caches. Where
+// many change, in the first update alone, the worst.
 void print_cell(std::vector<double> times, Change change) {
+    const double later = *std::max_element(times.begin() + 2, times.end());
     std::sort(times.begin(), times.end());
-    const std::size_t n = times.size();
     if (is_of_many(change))
-        std::printf(",%.0f", times[n - 1]);
+        std::printf(",%.0f", times.back());
     else
-        std::printf(",%.1f / %.1f / %.1f", times[n / 2], times[n * 99 / 100], times[n - 1]);
+        std::printf(",%.1f / %.1f / %.1f", times[times.size() / 2], later, times.back());
     std::fflush(stdout);
 }
 
@@ -204,7 +205,9 @@ void queries(std::size_t count, std::size_t moving, std::size_t replaced) {
 }  // namespace
 
 void changes(int frames) {
-    std::printf("# µs, median / 99 %% / worst of %d updates; of 1,000 changes at once, the worst of 16\n", frames);
+    std::printf(
+        "# µs, median / worst but for the first two / worst of %d updates; of 1,000 changes at once, the worst of 16\n",
+        frames);
     std::printf("an update in which,among 5000,among 20000,among 100000\n");
     for (const ChangeRow& row : kChanges) {
         std::printf("%s", row.name);
@@ -218,8 +221,8 @@ void queries_among_movers() {
     std::printf("queries among spheres of which some move, and some of these are replaced in each update, µs\n");
     std::printf("%8s %8s %8s %9s %9s %9s %9s %9s %9s %9s\n", "objects", "moving", "replaced", "update", "first ray",
                 "ray", "overlap", "closest", "anywhere", "far cast");
-    for (const std::size_t moving : {0, 100, 1000, 10000}) queries(10000, moving, 0);
-    for (const std::size_t count : {1000, 10000}) queries(count, count, count / 100);
+    for (const unsigned moving : {0u, 100u, 1000u, 10000u}) queries(10000, moving, 0);
+    for (const unsigned count : {1000u, 10000u}) queries(count, count, count / 100);
 }
 
 }  // namespace crofton::bench

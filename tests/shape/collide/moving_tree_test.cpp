@@ -44,7 +44,7 @@ struct Drift {
 TEST_SUITE("collide/moving_tree") {
     TEST_CASE("boxes that a moving box meets are visited, and the first soon, whichever drift, jump, come and go") {
         for (const double place : {0.0, 1e7})
-            for (const std::size_t jumps : {0, 3, 40, 300}) {
+            for (const unsigned jumps : {0u, 3u, 40u, 300u}) {
                 Drift drift(1000, place);
                 MovingTree tree;
                 std::size_t met = 0, visited = 0, visited_to_first = 0;
@@ -87,7 +87,7 @@ TEST_SUITE("collide/moving_tree") {
     }
 
     TEST_CASE("the nearest box is found soon within any distance") {
-        for (const std::size_t jumps : {3, 40}) {
+        for (const unsigned jumps : {3u, 40u}) {
             Drift drift(1000, 1e3);
             MovingTree tree;
             std::size_t asked = 0, queries = 0;

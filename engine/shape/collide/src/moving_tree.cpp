@@ -122,6 +122,12 @@ void walk_nearest_first(const BoundTree& tree, Number limit, LanesOf lanes_of, V
     }
 }
 
+// Beyond x on this side, also where x rounds to 0.
+float rounded_out(double x, float side) {
+    const auto rounded = static_cast<float>(x);
+    return rounded + side * (0x1p-22f * std::abs(rounded) + 1e-37f);
+}
+
 // What is not finite is left to who asks: all boxes may be met.
 void visit_all(std::size_t count, MovingTree::Visitor visit) {
     for (std::size_t item = 0; item < count; ++item)
@@ -157,8 +163,8 @@ void MovingTree::visit_near(const Aabb& bounds, double distance, Visitor visit) 
         const double low = bounds.min[i] - state_->origin[i], high = bounds.max[i] - state_->origin[i],
                      slack = 1e-11 * (std::abs(bounds.min[i]) + std::abs(bounds.max[i]) + std::abs(state_->origin[i]));
         if (!(low - slack > -1e37) || !(high + slack < 1e37)) return visit_all(tree.item_count(), visit);
-        lanes.low[i] = std::nextafter(static_cast<float>(low - slack), -std::numeric_limits<float>::infinity());
-        lanes.high[i] = std::nextafter(static_cast<float>(high + slack), std::numeric_limits<float>::infinity());
+        lanes.low[i] = rounded_out(low - slack, -1.0f);
+        lanes.high[i] = rounded_out(high + slack, 1.0f);
     }
     walk_nearest_first(
         tree.view(), square_of(distance),

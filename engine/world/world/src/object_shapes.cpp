@@ -14,6 +14,7 @@
 namespace crofton::world {
 namespace {
 
+constexpr double kGrowth = 1.0 + 1e-3;    // of margins: axes are unit vectors within 1e-4
 constexpr double kSlack = 1.0 + 0x1p-40;  // outweighs what bounds of shapes are rounded by
 
 // As validate_pose tells; what is clearly a rotation is told without its words.
@@ -55,10 +56,17 @@ RigidTransform frame_of(BoundKind kind, const Obb& box) {
     return frame;
 }
 
+Obb box_with_margin(const Obb& box, const convex::Shape& shape, const RigidTransform& pose, double margin) {
+    const glm::dvec3 given(box.half_extents), tight = shape.bounds().half_extents() * (1.0 + 1e-5) + 1e-3 * margin;
+    if (!(given.x <= tight.x && given.y <= tight.y && given.z <= tight.z)) return box_around(box, shape, pose, margin);
+    const glm::dvec3 grown = given + margin * kGrowth;
+    return spanning(box, -grown, grown);
+}
+
 Obb box_around(const Obb& box, const convex::Shape& shape, const RigidTransform& pose, double margin) {
     const glm::dmat3 axes(box.axes), to_box = glm::inverse(axes), turn = to_box * pose.rotation;
     const glm::dvec3 origin = to_box * (pose.translation - box.center), given(box.half_extents);
-    const double grown_by = margin * (1.0 + 1e-3);  // axes are unit vectors within 1e-4
+    const double grown_by = margin * kGrowth;
     glm::dvec3 low(0.0), high(0.0);
     const auto covers = [&] {
         for (int k = 0; k < 3; ++k)
@@ -250,7 +258,7 @@ Obb ObjectShapes::collider_box(std::uint32_t id, const Object& object, const Obb
                                double margin) const {
     if (margin == 0.0 || !has(id)) return box;
     const auto pose = pose_of(id, object, box, scene);
-    return pose && shape(id).is_bounded() ? box_around(box, shape(id), *pose, margin) : box;
+    return pose && shape(id).is_bounded() ? box_with_margin(box, shape(id), *pose, margin) : box;
 }
 
 }  // namespace crofton::world

@@ -100,5 +100,8 @@ class ObjectShapes {
 [[nodiscard]] Obb box_around(const convex::Shape& shape, const RigidTransform& pose);
 // Around the box, and what is within `margin` of the shape's bounds.
 [[nodiscard]] Obb box_around(const Obb& box, const convex::Shape& shape, const RigidTransform& pose, double margin);
+// The same where the box contains the shape. A box that is hardly larger than the shape is widened by the margin.
+[[nodiscard]] Obb box_with_margin(const Obb& box, const convex::Shape& shape, const RigidTransform& pose,
+                                  double margin);
 
 }  // namespace crofton::world

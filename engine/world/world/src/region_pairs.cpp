@@ -165,7 +165,7 @@ void World::State::list_changed_near_regions() {
 Obb World::State::region_collider_box(std::uint32_t other, const Obb& box) const {
     if (options.contact_margin == 0.0 || !regions.has_shape(other)) return box;
     const auto pose = regions.pose(other);
-    return pose ? world::box_around(box, regions.shape(other), *pose, options.contact_margin / 2.0) : box;
+    return pose ? world::box_with_margin(box, regions.shape(other), *pose, options.contact_margin / 2.0) : box;
 }
 
 void World::State::add_region_pairs_of(std::uint32_t id) {

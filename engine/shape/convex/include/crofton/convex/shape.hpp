@@ -182,7 +182,7 @@ class Shape {
     [[nodiscard]] static Result<Shape> triangle(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c);
     [[nodiscard]] static Shape hull(const Hull& hull);
     // The half-space { x : dot(normal, x) + offset ≥ 0 }. `normal` points into the solid, as everywhere, and has any
-    // length but 0.
+    // length but 0. Level ground at height h is {{0, -1, 0}, h}: planes of many engines point out of the solid.
     [[nodiscard]] static Result<Shape> half_space(const Plane& plane);
     // All points within `radius` of `core`, which is of any convex kind except a half-space.
     [[nodiscard]] static Result<Shape> rounded(const Shape& core, double radius);
