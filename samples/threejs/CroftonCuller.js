@@ -6,6 +6,26 @@
 //   culler.setMatrixAt(instancedMesh, 7, matrix);
 import { Box3, InstancedMesh, Matrix4, Vector3, WebGLCoordinateSystem } from 'three';
 
+/** The instances of matrices in an order in which neighbours in the world are mostly neighbours in memory: what a view sees is then read together. */
+function orderInSpace(matrices, count) {
+    const low = [0, 1, 2].map((k) => { let least = Infinity; for (let i = 0; i < count; ++i) least = Math.min(least, matrices[16 * i + 12 + k]); return least; });
+    let size = 1e-30;
+    for (let i = 0; i < count; ++i) for (let k = 0; k < 3; ++k) size = Math.max(size, matrices[16 * i + 12 + k] - low[k]);
+    const keys = new Float64Array(count);  // the bits of the three places in turn, and below them the instance
+    for (let i = 0; i < count; ++i) {
+        const cells = low.map((least, k) => Math.floor(127 * (matrices[16 * i + 12 + k] - least) / size) || 0);
+        let key = 0;
+        for (let bit = 6; bit >= 0; --bit) for (const cell of cells) key = 2 * key + (cell >> bit & 1);
+        keys[i] = key * 2 ** 32 + i;
+    }
+    return Uint32Array.from(keys.sort(), (key) => key % 2 ** 32);
+}
+function inOrder(array, order, size) {
+    const result = new Float32Array(size * order.length);
+    order.forEach((from, to) => result.set(array.subarray(size * from, size * (from + 1)), size * to));
+    return result;
+}
+
 export class CroftonCuller {
     #crofton; #tree; #visible; #frustum; #items = []; #entries = []; #matrix = new Matrix4(); #moved = new Set();
 
@@ -15,8 +35,14 @@ export class CroftonCuller {
             if (!mesh.geometry.boundingBox) mesh.geometry.computeBoundingBox();
             mesh.updateWorldMatrix(true, false);
             const isInstanced = mesh instanceof InstancedMesh, first = this.#items.length, count = isInstanced ? mesh.count : 1;
-            const entry = { mesh, isInstanced, first, matrices: isInstanced ? mesh.instanceMatrix.array.slice(0, 16 * count) : null,
-                colors: isInstanced && mesh.instanceColor ? mesh.instanceColor.array.slice() : null, drawn: count };
+            const entry = { mesh, isInstanced, first, places: null, matrices: null, colors: null };
+            if (isInstanced) {
+                const order = orderInSpace(mesh.instanceMatrix.array, count);
+                entry.places = new Uint32Array(count);
+                order.forEach((index, place) => { entry.places[index] = place; });
+                entry.matrices = inOrder(mesh.instanceMatrix.array, order, 16);
+                if (mesh.instanceColor) entry.colors = inOrder(mesh.instanceColor.array, order, 3);
+            }
             this.#entries.push(entry);
             for (let i = 0; i < count; ++i) this.#items.push({ entry, index: i });
             mesh.frustumCulled = false;
@@ -46,15 +72,17 @@ export class CroftonCuller {
     setMatrixAt(mesh, index, matrix) {
         const entry = this.#entries.find((one) => one.mesh === mesh);
         if (!entry) throw new Error('this mesh was not given to the culler');
-        if (entry.isInstanced) matrix.toArray(entry.matrices, 16 * index);
-        this.#moved.add(entry.first + index);
+        const place = entry.isInstanced ? entry.places[index] : 0;
+        if (place === undefined) throw new Error('the mesh had no such instance when it was given to the culler');
+        if (entry.isInstanced) matrix.toArray(entry.matrices, 16 * place);
+        this.#moved.add(entry.first + place);
     }
 
     /** Gives the library's memory back, and draws everything again. */
     dispose() {
         for (const entry of this.#entries) {
             if (!entry.isInstanced) entry.mesh.visible = true;
-            else this.#drawInstances(entry, Uint32Array.from({ length: entry.matrices.length / 16 }, (_, i) => entry.first + i), 0);
+            else this.#drawInstances(entry, entry.places.map((place) => entry.first + place), 0);  // as they were
             entry.mesh.frustumCulled = true;
         }
         for (const one of [this.#tree, this.#visible, this.#frustum]) one.free();

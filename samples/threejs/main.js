@@ -66,7 +66,7 @@ async function start() {
         gl.readPixels(0, 0, 640, 360, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
         return pixels;
     };
-    const views = [0, 1, 2, 3, 4], all = views.map(picture), culler = new CroftonCuller(crofton, meshes);
+    const views = [0, 1, 2, 3, 4], all = views.map(picture), matrices = meshes.map((mesh) => mesh.instanceMatrix.array.slice()), culler = new CroftonCuller(crofton, meshes);
     const answer = { own: Infinity, crofton: Infinity, seen: [], different: 0, lit: 0 };
     for (let repeat = 0; repeat < 7; ++repeat) {
         answer.own = Math.min(answer.own, time(() => batch.onBeforeRender(renderer, scene, camera, batch.geometry, material)));
@@ -91,7 +91,9 @@ async function start() {
     culler.setMatrixAt(meshes[hidden % 3], Math.floor(hidden / 3), ahead);
     answer.moved = culler.update(camera) - without === 1 && before - without <= 1;
     culler.dispose();
-    answer.all = meshes.reduce((sum, mesh) => sum + mesh.count, 0) === COUNT;
+    matrices[hidden % 3].set(ahead.elements, 16 * Math.floor(hidden / 3));
+    answer.all = meshes.reduce((sum, mesh) => sum + mesh.count, 0) === COUNT &&
+        meshes.every((mesh, m) => mesh.instanceMatrix.array.every((number, i) => number === Math.fround(matrices[m][i])));
     globalThis.answer = answer;
     document.getElementById('says').textContent = `Culling of ${COUNT} instances: three.js ${answer.own.toFixed(2)} ms, Crofton ${
         answer.crofton.toFixed(3)} ms: ${(answer.own / answer.crofton).toFixed(0)} times as fast; ${answer.different} bytes of pixels differ.`;

@@ -218,6 +218,16 @@ def test_hidden_and_layered_objects(world):
     assert len(world.view(crofton.Camera(), layers=1)) == 0
 
 
+def test_a_list_of_boxes_is_an_array_of_them(world):
+    near, far = crofton.Box((0, 0, -5), (1, 1, 1)), crofton.Box((0, 0, -9), (1, 1, 1))
+    assert len(world.add_boxes([near, far])) == len(world.add_boxes((near, far))) == len(crofton.BoxList([near, far])) == 2
+    world.attach(crofton.Region.prepare([near, far, near]))
+    world.update()
+    assert len(world.view(crofton.Camera())) == 7
+    with pytest.raises(TypeError, match="not all are a Box"):
+        world.add_boxes([near, 5])
+
+
 def test_what_hides_behind_a_wall_is_left_out(world, cube):
     wall = world.add_mesh(cube[0] * [20, 20, 0.1], cube[1], occluders=True)
     front = world.add(mesh=wall, transform=at(0, 0, -10))

@@ -209,6 +209,18 @@ for (const build of BUILDS) {
         camera.free();
         fails({ seen: camera, objects }, 'bad handle');
     });
+    here('limits of work, of origins and of rebuilding are obeyed, and named', () => {
+        const world = new crofton.World({ rebuildBudget: 0 }), visible = new crofton.ViewResult(), mesh = world.addMesh(SQUARE.positions, SQUARE.indices, { clusters: true });
+        for (let z = -10; z > -50; z -= 2) world.add({ mesh, transform: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, z, 1] });
+        world.update();
+        const listed = (workLimit) => world.view({ camera: {}, picture: { workLimit } }, visible).triangles.length;
+        assert.ok(listed(0) === 1 && listed(2 ** 40) === 1, `${listed(0)}, ${listed(2 ** 40)}`);
+        assert.throws(() => listed(-1), (error) => refused('invalid argument')(error) && /workLimit/.test(error.message));
+        assert.throws(() => new crofton.World({ rebuildBudget: 0.5 }), /rebuildBudget/);
+        const region = new crofton.Region([{ shape: new crofton.Shape({ sphere: { radius: 1 } }) }], { maxOrigin: 100 });
+        world.attach(region, [100, 0, 0]);
+        assert.throws(() => world.attach(region, [101, 0, 0]), (error) => error.status !== undefined);
+    });
     here('arguments of another kind, of another library, or detached, are named', async () => {
         const other = await loadBuild(build), world = new crofton.World(), visible = new crofton.ViewResult(), frustum = new crofton.Frustum(), boxes = new crofton.Boxes(2);
         world.add({ sphere: { center: [0, 0, -5], radius: 1 } });
