@@ -169,11 +169,12 @@ struct ManifoldOptions {
 // pair's size. Normal and depth are then those of that face. If there are more points than wanted, those of the last
 // frame stay, provided that one of them is as deep within 1e-4 of the size, and that they span nine tenths of the area.
 //
-// Both ends of a point, half of its depth from its position along the normal, are on the surfaces, also under faces that
-// are tilted against the normal. Points are off by 1e-9 of the pair's size, by 1e-5 if a hull's face is not quite flat (HullOptions), and with
-// cylinders and cones by as much as the depth may be. Round sides (of capsules, cylinders and cones, and edges of
-// rounded shapes) that are parallel within 2 degrees have a point at each end of their common stretch, midway between
-// them, also where they pass each other. Next to a sharp edge this holds if the two lie on each other.
+// Both ends of a point, half of its depth from its position along the normal, are on the surfaces, also under faces
+// that are tilted against the normal. Points are off by 1e-9 of the pair's size, by 1e-5 if a hull's face is not quite
+// flat (HullOptions), and with cylinders and cones by as much as the depth may be. Round sides (of capsules, cylinders
+// and cones, and edges of rounded shapes) that are parallel within 2 degrees have a point at each end of their common
+// stretch, midway between them, also where they pass each other. Next to a sharp edge this holds if the two lie on each
+// other.
 //
 // For shapes of parts it returns the deepest of the manifolds below; this allocates.
 [[nodiscard]] Manifold contact_manifold(const ShapeAtPose& a, const ShapeAtPose& b, const ManifoldOptions& options = {},
@@ -250,8 +251,8 @@ struct Beside {
 // Replaces `found` by the contacts of a and b, at least one if they overlap. If their way out is that of a neighbour's
 // contact, they have the points that no neighbour covers, and the neighbour's contact is at least as deep as they
 // overlap along it. If all points are covered, one is kept, with an end at the height of one surface.
-// Call it for each pair, with the others as neighbours. Meshes, height fields, half-spaces, and shapes that overlap by more than the rounding to float are not
-// treated as neighbours.
+// Call it for each pair, with the others as neighbours. Meshes, height fields, half-spaces, and shapes that overlap by
+// more than the rounding to float are not treated as neighbours.
 void contact_manifolds(const ShapeAtPose& a, const ShapeAtPose& b, const Beside& beside, const ManifoldOptions& options,
                        Manifolds& found, PairCache* cache = nullptr);
 
