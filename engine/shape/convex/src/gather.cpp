@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
+
+#include "pair.hpp"
 
 namespace crofton::convex {
 namespace {
@@ -45,9 +48,34 @@ void keep_ids_apart(GatheredPoints& points, int before) {
         }
 }
 
+// Leaves a rounded box or capsule from within, along a unit vector of its frame; returns the way to the surface. The
+// distance from the core is convex along the ray: Newton's method from beyond the surface comes back to it.
+double way_out(const glm::dvec3& half, double radius, const glm::dvec3& point, const glm::dvec3& out) {
+    double t = HUGE_VAL;
+    for (int k = 0; k < 3; ++k)
+        if (out[k] != 0.0)
+            t = std::min(t, (half[k] + radius - std::copysign(1.0, out[k]) * point[k]) / std::abs(out[k]));
+    for (int i = 0; i < 40; ++i) {
+        const glm::dvec3 p = point + t * out, from_core = p - (glm::clamp)(p, -half, half);
+        const double distance = glm::length(from_core), slope = glm::dot(from_core, out);
+        if (!(slope > 0.0)) return 0.0;  // the ray passes the shape
+        const double next = t - (distance - radius) * distance / slope;
+        if (!(next < t)) break;
+        t = next;
+    }
+    return std::max(t, 0.0);
+}
+
 // How far a point is below the surface of a rounded shape, along a direction out of it; 0 of one that is not inside.
 double below_surface(const ShapeAtPose& placed, const glm::dvec3& point, const glm::dvec3& out) {
-    const double reach = placed.shape.core_radius() + placed.shape.radius(),
+    const Shape& shape = placed.shape;
+    if (shape.kind() == Kind::box || shape.kind() == Kind::capsule) {
+        const glm::dvec3 half =
+            shape.kind() == Kind::box ? glm::dvec3(shape.half_extents()) : glm::abs(glm::dvec3(shape.vertex(0)));
+        return way_out(half, shape.radius(), Pair::local(placed.pose.rotation, point - placed.pose.translation),
+                       Pair::local(placed.pose.rotation, out));
+    }
+    const double reach = shape.core_radius() + shape.radius(),
                  way = 2.0 * reach + glm::distance(point, placed.pose.translation);
     const auto hit = raycast(placed, {point + way * out, -out, way});
     return hit && !hit->started_inside ? way - hit->t : 0.0;
