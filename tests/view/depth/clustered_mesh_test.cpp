@@ -157,6 +157,39 @@ TEST_CASE("a mesh that deforms keeps its clusters and their order, and their box
     }
 }
 
+TEST_CASE("a refit that reads in place is a refit and then a loan") {
+    oracle::NearMisses random(14);
+    const TriangleMesh mesh = hills(30, 50.0f, 5.0f, random), now = deformed(mesh, 1.1f);
+    for (const bool keeps_order : {false, true}) {
+        ClusteredMesh cut = ClusteredMesh::cut(mesh.positions, mesh.indices).value();
+        auto indices = now.indices;
+        const auto order = keeps_order ? depth::IndexOrder::original : depth::IndexOrder::permuted;
+        if (!keeps_order) {
+            cut.permute(now.indices, indices);
+            REQUIRE(cut.lend(mesh.positions, indices));
+            cut.keep_copy();
+        }
+        ClusteredMesh expected = cut;
+        REQUIRE(expected.refit(now.positions, indices));
+        REQUIRE(expected.lend(now.positions, indices, order));
+        const std::uint64_t identity = cut.identity();
+        REQUIRE(cut.refit_lent(now.positions, indices));
+        CHECK(cut.identity() != identity);
+        CHECK(cut.memory() == expected.memory());
+        CHECK(std::ranges::equal(cut.triangle_order(), expected.triangle_order()));
+        CHECK(same(cut, expected));
+        // It reads the arrays that it was given.
+        auto moved = now.positions;
+        REQUIRE(cut.refit_lent(moved, indices));
+        moved.assign(moved.size(), glm::vec3(0.0f));
+        CHECK_FALSE(ClusteredMesh(cut).lend(now.positions, indices, order));
+        TriangleMesh bad = now;
+        bad.positions[7].x = std::numeric_limits<float>::quiet_NaN();
+        CHECK(expected.refit_lent(bad.positions, indices).error().item == 7);
+        CHECK(ClusteredMesh(expected).lend(now.positions, indices, order));
+    }
+}
+
 TEST_CASE("of a mesh that has deformed all triangles that own a sample are listed") {
     oracle::NearMisses random(10);
     depth::DepthCuller culler;

@@ -62,22 +62,26 @@ class PatchBuilder {
     Vector<std::uint32_t> first_vertices;
     MeshPacker packer;
 
-    // Triangles [begin, end) of the order.
-    void add(std::uint32_t begin, std::uint32_t end) {
+    // Triangles [begin, end) of the order. Returns the number of vertices.
+    std::uint32_t add(std::uint32_t begin, std::uint32_t end) {
         // Ascending, so that what a cluster lists is drawn in the order of the mesh.
         std::sort(order.begin() + begin, order.begin() + end);
         own_.clear();
         for (std::uint32_t k = begin; k < end; ++k)
             for (std::uint32_t c = 0; c < 3; ++c) own_.push_back(indices_[std::size_t{3} * order[k] + c]);
+        const std::uint32_t count = weld();
+        packer.add(bound_of(positions_, own_), std::span(corners_).first(own_.size()), count);
+        return count;
+    }
+    // Copies what the cluster added last needs until its mesh is lent.
+    void copy_vertices(std::uint32_t count) {
         first_vertices.push_back(static_cast<std::uint32_t>(vertices.size()));
-        weld();
-        packer.add(bound_of(positions_, own_), std::span(corners_).first(own_.size()),
-                   static_cast<std::uint32_t>(vertices.size()) - first_vertices.back());
+        vertices.insert(vertices.end(), welded_.begin(), welded_.begin() + count);
     }
 
   private:
-    // Numbers the cluster's vertices, equal positions alike.
-    void weld() {
+    // Numbers the cluster's vertices, equal positions alike. Returns how many there are.
+    std::uint32_t weld() {
         numbers_.clear();
         std::uint32_t count = 0;
         for (std::size_t i = 0; i < own_.size(); ++i) {
@@ -86,9 +90,10 @@ class PatchBuilder {
             const std::array<float, 3> place = {p.x + 0.0f, p.y + 0.0f, p.z + 0.0f};
             const std::uint8_t number = numbers_.number_of(std::bit_cast<std::array<std::uint32_t, 3>>(place),
                                                            static_cast<std::uint8_t>(count));
-            if (number == count) ++count, vertices.push_back(p);
+            if (number == count) welded_[count++] = p;
             corners_[i] = number;
         }
+        return count;
     }
 
     std::span<const glm::vec3> positions_;
@@ -96,6 +101,7 @@ class PatchBuilder {
     Vector<std::uint32_t> own_;  // indices of the cluster
     SmallTable<std::array<std::uint32_t, 3>> numbers_;
     std::array<std::uint8_t, 3 * Cluster::kMaxTriangles> corners_;
+    std::array<glm::vec3, 3 * Cluster::kMaxTriangles> welded_;
 };
 
 }  // namespace
@@ -106,10 +112,19 @@ Result<ClusteredMesh> ClusteredMesh::cut(std::span<const glm::vec3> positions, s
     const std::uint32_t most =
         options.max_triangles != 0 ? options.max_triangles : cluster_size_for(indices.size() / 3);
     Groups groups = cut_into_groups(positions, indices, most);
-    return build(positions, indices, std::move(groups.order), groups.ends);
+    return build(positions, indices, std::move(groups.order), groups.ends, false);
 }
 
 Result<void> ClusteredMesh::refit(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices) {
+    return refit(positions, indices, false);
+}
+
+Result<void> ClusteredMesh::refit_lent(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices) {
+    return refit(positions, indices, true);
+}
+
+Result<void> ClusteredMesh::refit(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices,
+                                  bool lent) {
     if (indices.size() != std::size_t{3} * triangle_count_)
         return fail(ErrorCode::invalid_argument, kNoItem,
                     "clusters: the deformed mesh has another number of triangles");
@@ -120,17 +135,22 @@ Result<void> ClusteredMesh::refit(std::span<const glm::vec3> positions, std::spa
         std::iota(order.begin(), order.end(), 0u);
     }
     for (const Cluster cluster : clusters()) ends.push_back(cluster.first_triangle + cluster.triangle_count);
-    *this = build(positions, indices, std::move(order), ends);
+    *this = build(positions, indices, std::move(order), ends, lent);
+    // Permuted indices need no order.
+    if (lent && std::ranges::is_sorted(own_->order)) own_ = Owner<Own>();
     return {};
 }
 
 ClusteredMesh ClusteredMesh::build(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices,
-                                   Vector<std::uint32_t> order, std::span<const std::uint32_t> ends) {
+                                   Vector<std::uint32_t> order, std::span<const std::uint32_t> ends, bool lent) {
     ClusteredMesh mesh;
     PatchBuilder builder(positions, indices);
     builder.order = std::move(order);
     std::uint32_t begin = 0;
-    for (const std::uint32_t end : ends) builder.add(std::exchange(begin, end), end);
+    for (const std::uint32_t end : ends) {
+        const std::uint32_t count = builder.add(std::exchange(begin, end), end);
+        if (!lent) builder.copy_vertices(count);
+    }
     mesh.triangle_count_ = begin;
     builder.packer.pack(mesh);
     for (const std::uint32_t i : indices) mesh.largest_ = (glm::max)(mesh.largest_, glm::abs(positions[i]));
@@ -139,6 +159,7 @@ ClusteredMesh ClusteredMesh::build(std::span<const glm::vec3> positions, std::sp
     crofton::detail::drop_spare(builder.first_vertices);
     mesh.own_ =
         Owner<Own>::make(Own{std::move(builder.order), std::move(builder.vertices), std::move(builder.first_vertices)});
+    if (lent) mesh.lent_positions_ = positions.data(), mesh.lent_indices_ = indices.data();
     mesh.identity_ = next_identity();
     return mesh;
 }

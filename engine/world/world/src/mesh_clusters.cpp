@@ -64,8 +64,7 @@ bool MeshClusters::update(const scene::Scene& scene, Executor& executor) {
         for (std::size_t i = begin; i < end; ++i) {
             Mesh& mesh = meshes_[deformed_[i]];
             const TriangleMesh& triangles = scene.mesh(deformed_[i]);
-            mesh.usable = mesh.cut.refit(triangles.positions, triangles.indices).has_value();
-            require_ok(lend(mesh, triangles));
+            mesh.usable = mesh.cut.refit_lent(triangles.positions, triangles.indices).has_value();
         }
     });
     return !deformed_.empty();

@@ -70,6 +70,9 @@ class ClusteredMesh {
     // Pass the indices of the mesh that was cut, or, if the order was dropped, the permuted ones. Errors: as cut();
     // another number of indices (invalid_argument). The object is then as it was.
     [[nodiscard]] Result<void> refit(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices);
+    // Calls refit(), and reads the arrays in place from then on, as after lend(): without copying positions and
+    // comparing each corner. The order of triangles is dropped if `indices` have it already.
+    [[nodiscard]] Result<void> refit_lent(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices);
 
     // Reads positions from the caller's arrays from now on, and drops its copies: it then needs a tenth to a seventh of
     // the arrays' memory. The arrays must outlive this object and its copies, and stay as they are: a change of them is
@@ -198,10 +201,12 @@ class ClusteredMesh {
     };
     static constexpr std::size_t kGroup = 16;
 
-    // Triangles in their order, and where each cluster ends.
+    // Triangles in their order, and where each cluster ends. `lent`: reads the arrays in place.
     [[nodiscard]] static ClusteredMesh build(std::span<const glm::vec3> positions,
                                              std::span<const std::uint32_t> indices, Vector<std::uint32_t> order,
-                                             std::span<const std::uint32_t> ends);
+                                             std::span<const std::uint32_t> ends, bool lent);
+    [[nodiscard]] Result<void> refit(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices,
+                                     bool lent);
     [[nodiscard]] static std::uint64_t next_identity();
     [[nodiscard]] std::size_t group_count() const { return cluster_count_ == 0 ? 0 : (cluster_count_ - 1) / kGroup; }
     [[nodiscard]] const Group* groups() const {
