@@ -104,9 +104,7 @@ TEST_SUITE("collide/tree edges") {
             check_growing(tree, box, most, [&](double radius) { return Sphere{place, radius}; });
             const glm::dvec3 along = random.number(0.0, size) * glm::dvec3(axis == 0, axis == 1, axis == 2);
             const double side = place[axis] > box.center[axis] ? 1.0 : -1.0;
-            check_growing(tree, box, most, [&](double radius) {
-                return Capsule{place, place + side * along, radius};
-            });
+            check_growing(tree, box, most, [&](double radius) { return Capsule{place, place + side * along, radius}; });
         }
     }
 

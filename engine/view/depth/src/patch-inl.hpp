@@ -410,7 +410,7 @@ class PatchDrawer {
     Patch& patch_;
     const bool unclear_;  // in clip coordinates
     const ClipErrors errors_;
-    std::uint64_t drawn_ = 0, solid_ = 0, visible_ = 0;        // triangles
+    std::uint64_t drawn_ = 0, solid_ = 0, visible_ = 0;  // triangles
     static constexpr int kEnds = 3;
     alignas(
         64) std::int32_t closed_[Cluster::kMaxTriangles];  // edges, one bit each; from kEnds, corners at other edges
