@@ -123,6 +123,7 @@ Result<BoxTree> BoxTree::deserialise(std::span<const std::byte> bytes, Trust tru
         std::size_t at = sizeof(header);
         TreeStorage::arrays(items, structure, header, [&](auto& array, std::uint64_t count) {
             constexpr std::uint64_t kBetweenQuestions = 1 << 14;  // elements: some MB of new memory
+            array.clear();
             array.reserve(count);
             for (std::uint64_t done = 0; done < count;) {
                 if (stop_copy.is_raised(static_cast<double>(at) / static_cast<double>(bytes.size()))) return;
