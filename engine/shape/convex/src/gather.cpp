@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
-#include "pair.hpp"
 
 namespace crofton::convex {
 namespace {
@@ -48,15 +49,21 @@ void keep_ids_apart(GatheredPoints& points, int before) {
         }
 }
 
-// Leaves a rounded box or capsule from within, along a unit vector of its frame; returns the way to the surface. The
-// distance from the core is convex along the ray: Newton's method from beyond the surface comes back to it.
-double way_out(const glm::dvec3& half, double radius, const glm::dvec3& point, const glm::dvec3& out) {
+// Leaves a rounded box or capsule from within, along a unit vector; returns the way to the surface. The distance from
+// the core is convex along the ray: Newton's method from beyond the surface comes back to it. Of a pose that is not
+// quite orthonormal, which skews the core alone, the nearest point of the core is off by its skew, so the distance is
+// by its square, below 1e-12.
+double way_out(const glm::dvec3& half, double radius, const RigidTransform& pose, const glm::dvec3& point,
+               const glm::dvec3& out) {
+    constexpr double kBeyond = 1.0 + 1e-5;
+    const glm::dmat3 to_local = glm::inverse(pose.rotation);
+    const glm::dvec3 at = to_local * (point - pose.translation), along = to_local * out;
     double t = HUGE_VAL;
     for (int k = 0; k < 3; ++k)
-        if (out[k] != 0.0)
-            t = std::min(t, (half[k] + radius - std::copysign(1.0, out[k]) * point[k]) / std::abs(out[k]));
+        if (along[k] != 0.0)
+            t = std::min(t, (half[k] + kBeyond * radius - std::copysign(1.0, along[k]) * at[k]) / std::abs(along[k]));
     for (int i = 0; i < 40; ++i) {
-        const glm::dvec3 p = point + t * out, from_core = p - (glm::clamp)(p, -half, half);
+        const glm::dvec3 p = at + t * along, from_core = pose.rotation * (p - (glm::clamp)(p, -half, half));
         const double distance = glm::length(from_core), slope = glm::dot(from_core, out);
         if (!(slope > 0.0)) return 0.0;  // the ray passes the shape
         const double next = t - (distance - radius) * distance / slope;
@@ -72,8 +79,7 @@ double below_surface(const ShapeAtPose& placed, const glm::dvec3& point, const g
     if (shape.kind() == Kind::box || shape.kind() == Kind::capsule) {
         const glm::dvec3 half =
             shape.kind() == Kind::box ? glm::dvec3(shape.half_extents()) : glm::abs(glm::dvec3(shape.vertex(0)));
-        return way_out(half, shape.radius(), Pair::local(placed.pose.rotation, point - placed.pose.translation),
-                       Pair::local(placed.pose.rotation, out));
+        return way_out(half, shape.radius(), placed.pose, point, out);
     }
     const double reach = shape.core_radius() + shape.radius(),
                  way = 2.0 * reach + glm::distance(point, placed.pose.translation);
