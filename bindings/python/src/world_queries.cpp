@@ -153,7 +153,7 @@ PyObject* raycast_method(PyObject* self, PyObject* const* values, Py_ssize_t cou
     });
 }
 
-// What casts are given.
+// The arguments that all casts share.
 struct Cast {
     Cast(const py::handle& velocity, const py::object& given_pose, const py::handle& spin, double duration,
          bool ignore_initial_overlaps, std::uint32_t layers, const py::handle& ignored)

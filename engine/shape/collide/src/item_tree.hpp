@@ -14,8 +14,8 @@ namespace crofton::collide {
 // again. Items whose moves make their leaf much larger than it was are put in again, too.
 class ItemTree {
   public:
-    // What belongs into a full leaf splits it, or goes into one leaf more of its node, which is as wide as the node: an
-    // item costs less then, queries more.
+    // What happens when a leaf is full: it is split, or its node gets one more leaf, which all its full leaves share
+    // and which is as wide as the node. Sharing makes insertions cheaper and queries dearer.
     enum class FullLeaves : std::uint8_t { share_one_more, split };
     explicit ItemTree(FullLeaves full = FullLeaves::share_one_more) : full_leaves_(full) { clear(); }
 
@@ -43,7 +43,7 @@ class ItemTree {
     // Bounds of all blocks anew, from the leaves'.
     void bound_all();
     void remember_extents();
-    // Of the leaf's bounds when it was made, and of the leaves on average, as of bound_all().
+    // Return the extent of a leaf's bounds when the leaf was made, and the mean of all leaves, as of bound_all().
     [[nodiscard]] float leaf_extent(std::size_t leaf) const { return levels_[0].extents[leaf]; }
     [[nodiscard]] float mean_leaf_extent() const {
         return leaf_count() > 0 ? static_cast<float>(remembered_ / static_cast<double>(leaf_count())) : 0.0f;

@@ -212,17 +212,13 @@ class Traveller {
     float slack_ = 0.0f;
 };
 
-// What is to be visited, and at what distance it begins.
+// A block or item that waits to be visited, and the distance at which it begins.
 struct Step {
     float entry;
     std::uint32_t child;
 };
 // Beside kLeafBit, in Step::child: the rest is an item.
 constexpr std::uint32_t kItemBit = 0x40000000u;
-
-}  // namespace
-
-namespace {
 
 // Visits what begins before the limit, nearest first; what is visited may lessen the limit. lanes_of(block, limit,
 // entries): those that may begin before it, and where. visit_leaf(leaf, lanes, entries, push): push(entry, item) has
